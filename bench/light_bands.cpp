@@ -1,5 +1,5 @@
 // Measures how much light real scenes have per coefficient of each band, which gives the numbers in
-// baker/compress/light_weights.hpp.
+// baker/compress/cpca.hpp.
 //   light_bands MAP...
 // Prints the bands of each environment map and of some discs relative to band 0, and their mean.
 #include <array>

@@ -19,7 +19,6 @@ sky="--light sun:70,48,12,60,54,44 --light constant:0.3,0.42,0.6"
 draw 01-final gallery $evening
 draw 02-irradiance gallery $evening --view irradiance
 draw 03-transfer-dc gallery --light constant:1,1,1 --view transfer-dc
-draw 04-transfer-band-1 gallery --light constant:1,1,1 --view transfer-band:1
 draw 05-error flight --light constant:1,1,1 --view error
 draw 06-clusters gallery --light constant:1,1,1 --view clusters
 draw 07-normals gallery --light constant:1,1,1 --view normals

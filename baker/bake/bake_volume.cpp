@@ -343,19 +343,16 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
-  // A medium has no sharp rim to find, and each ray is marched.
-  const Around around{bake, index, glm::vec3(0.0f), options.effectiveRays() / 4, report};
-  const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;
   CachedCoding coding(context);
   // The transfer is baked only if a result that follows from it is not in the cache.
   std::optional<VolumeTransfer> light;
-  const auto bakeLight = [&](const auto& use) -> Result<void> {
-    auto transfer = transferOf(placed, own, report.ray_seconds);
-    if (!transfer) return failAgain(transfer.error());
-    if (!use(*transfer)) return bake.stopped();
-    light.emplace(std::move(*transfer));
+  const auto transfer = [&]() -> Result<void> {
+    if (light) return {};
+    auto baked_light = transferOf(placed, own, report.ray_seconds);
+    if (!baked_light) return failAgain(baked_light.error());
+    light.emplace(std::move(*baked_light));
     return {};
   };
   Result<void> made;
@@ -363,9 +360,8 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
       own.part("cells", options.effectiveErrorBound(), options.effectiveGlossyErrorBound());
   const auto found = findOrMake(cells_context, coded, [&] {
     coded = {};
-    made = bakeLight([&](const VolumeTransfer& transfer) {
-      return codeCells(transfer, options, coding, context.progress, coded);
-    });
+    made = transfer();
+    if (made && !codeCells(*light, options, coding, context.progress, coded)) made = bake.stopped();
     return made.has_value();
   });
   if (!found) return failAgain(made.error());
@@ -375,16 +371,18 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 
-  if (!around.plan().baked || findAround(around, around_context, result)) return result;
-  if (!light)
-    if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
-  const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
-                         std::span<float> scattered) {
-    return marchVolume(*light, origin, direction, t_max, scattered);
+  const auto body = [&]() -> Result<std::unique_ptr<Body>> {
+    if (auto marched = transfer(); !marched) return failAgain(marched.error());
+    const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                           std::span<float> scattered) {
+      return marchVolume(*light, origin, direction, t_max, scattered);
+    };
+    return std::make_unique<VolumeBody>(march, light->order, low, high);
   };
-  const VolumeBody body(march, light->order, low, high, /*scatters=*/true);
-  if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
+  // A medium has no sharp rim to find, and each ray is marched.
+  const Around around{bake, index, glm::vec3(0.0f), {low, high}, options.effectiveRays() / 4};
+  if (auto done = bakeAround(around, own, body, result, report); !done) return failAgain(done.error());
   return result;
 }
 

@@ -1,5 +1,3 @@
-#include "baker/proxy/simplify.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <meshoptimizer.h>
+
+#include "baker/proxy/capture_proxy.hpp"
 
 namespace lambent::baker {
 

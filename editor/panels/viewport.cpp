@@ -43,15 +43,6 @@ void setTransforms(Session& session, const std::vector<ecs::Entity>& entities,
   if (!edits.empty()) logRefusal(session, session.history.setFields(edits));
 }
 
-void setLight(Session& session, ecs::Entity entity, const scene::LocalLightComponent& to) {
-  const FieldEdit edits[] = {{entity, "Light", "strength", to.strength},
-                             {entity, "Light", "radius", to.radius_m},
-                             {entity, "Light", "range", to.range_m},
-                             {entity, "Light", "inner_cone", to.inner_cone_rad},
-                             {entity, "Light", "outer_cone", to.outer_cone_rad}};
-  logRefusal(session, session.history.setFields(edits));
-}
-
 std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
   const ecs::Registry& registry = session.document.registry();
   std::vector<GizmoTarget> targets;
@@ -69,9 +60,6 @@ void markHandles(const Session& session, Marks& marks, const std::vector<SunOnSk
   };
   for (const Handle handle : kHandles)
     mark("gizmo." + std::string(handleWord(handle)), session.handles.gizmo.handleScreenPoint(handle));
-  for (const LightHandle handle : kLightHandles)
-    mark("light." + std::string(lightHandleWord(handle)),
-         session.handles.light_gizmo.handleScreenPoint(handle));
   mark("gizmo.pivot", session.handles.gizmo.pivotScreenPoint());
   for (std::size_t sun = 0; sun < session.handles.sun_gizmo.count(); ++sun)
     if (const auto at = session.handles.sun_gizmo.place(sun)) {
@@ -89,7 +77,7 @@ void addReadout(const glm::vec2& pixel, const std::string& text) {
 }
 
 // Handles the pointer in the view, except for the camera: it picks entities, drags the handles of the
-// selection and of lights, and drags suns over the sky. Every drag is one step of the history. Call it right
+// selection, and drags suns over the sky. Every drag is one step of the history. Call it right
 // after the view's own widget. Returns the pixel at which the user clicked to pick something, from the view's
 // top left corner, or none if there was no such click.
 std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered) {
@@ -102,14 +90,9 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
   std::vector<ecs::Entity> entities = session.selection.topmost(session.document);
   std::erase_if(entities, [&](ecs::Entity entity) { return !registry.has<scene::Transform>(entity); });
   Gizmo& gizmo = handles.gizmo;
-  LightGizmo& light_gizmo = handles.light_gizmo;
   gizmo.setView(view, viewport);
-  light_gizmo.setView(view, viewport);
   gizmo.setTargets(targetsOf(session, entities));
   const ecs::Entity primary = session.selection.primaryEntity(session.document);
-  const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
-  const bool light_handles = light && registry.has<scene::Transform>(primary);
-  if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
   SunGizmo& sun_gizmo = handles.sun_gizmo;
   const std::vector<SunOnSky> suns = sunsOf(session);
   sun_gizmo.setView(view, viewport);
@@ -119,12 +102,11 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
 
   std::optional<glm::vec2> clicked;
   const bool eye_moves = io.KeyAlt;
-  const auto dragging = [&] { return gizmo.dragging() || light_gizmo.dragging() || sun_gizmo.dragging(); };
-  const auto release = [&] { gizmo.release(), light_gizmo.release(), sun_gizmo.release(); };
+  const auto dragging = [&] { return gizmo.dragging() || sun_gizmo.dragging(); };
+  const auto release = [&] { gizmo.release(), sun_gizmo.release(); };
   if (hovered && !dragging()) {
     gizmo.hover(pixel);
     sun_gizmo.hover(pixel);
-    if (light_handles) light_gizmo.hover(pixel);
   }
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
     handles.pointer.press(pixel);
@@ -132,8 +114,6 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
       handles.sun_taken = suns[*sun_gizmo.active()];
       if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
       session.history.begin("turn of " + handles.sun_taken->name);
-    } else if (light_handles && light_gizmo.press(pixel)) {
-      session.history.begin("light of " + session.document.nameOf(primary));
     } else if (gizmo.press(pixel)) {
       session.history.begin(fmt::format("{} of {}",
                                         gizmo.options.mode == GizmoMode::Move     ? "move"
@@ -151,8 +131,6 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
       if (sun_gizmo.dragging()) {
         // A click without a drag does not move a sun that is at the border.
         if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(at));
-      } else if (light_gizmo.dragging()) {
-        setLight(session, primary, light_gizmo.drag(at));
       } else {
         setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
       }
@@ -165,7 +143,6 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     clicked = pixel - glm::vec2(viewport.x, viewport.y);
   }
   paint(gizmo.paint(), viewport);
-  if (light_handles) paint(light_gizmo.paint(), viewport);
   paint(sun_gizmo.paint(), viewport);
   addReadout(pixel, gizmo.readout());
   if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
@@ -298,14 +275,6 @@ void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
     session.selection.set(id);
 }
 
-// Takes an asset that is dropped onto the last widget.
-void takeAsset(Session& session) {
-  if (!ImGui::BeginDragDropTarget()) return;
-  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kDraggedAsset))
-    runOrLog(session, "use-asset", std::array{std::string(static_cast<const char*>(payload->Data))});
-  ImGui::EndDragDropTarget();
-}
-
 // Draws the menu that a right click in the view opens. A drag with that button looks around and opens none.
 void drawViewMenu(Session& session, Marks& marks) {
   const bool clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Right) && session.viewing.hovered &&
@@ -334,7 +303,6 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   marks.put("viewport");
-  takeAsset(session);
   const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
   const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);

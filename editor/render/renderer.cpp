@@ -55,6 +55,9 @@ namespace {
 frame::OverlayOptions overlaysOf(const Session& session) {
   frame::OverlayOptions overlays = session.viewing.overlays;
   if (!session.handles.shown) return overlays;
+  // A light that is selected shows its size and cones.
+  const ecs::Entity primary = session.selection.primaryEntity(session.document);
+  overlays.lights |= session.document.registry().has<scene::LocalLightComponent>(primary);
   constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
   for (const TurnedBox& turned : selectionBoxes(session.document, session.selection)) {
     const scene::Box& box = turned.box;
@@ -219,21 +222,6 @@ void ReferencePicture::update(Session& session) {
   exposure_ev_ = exposure_ev;
 }
 
-void Thumbnails::update(Session& session) {
-  auto& pictures = session.asset_pictures.pictures();
-  std::erase_if(textures_, [&](const auto& texture) { return !pictures.contains(texture.first); });
-  for (auto& [file, picture] : pictures) {
-    if (picture.image.texels.empty()) continue;
-    const spec::Rgba8Image image = std::exchange(picture.image, {});
-    gpu::Texture texture("thumbnail", {.format = GL_RGBA8, .width = image.width, .height = image.height});
-    glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
-                        static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.texels.data());
-    picture.texture = texture.id();
-    picture.aspect = static_cast<float>(image.width) / static_cast<float>(image.height);
-    textures_[file] = std::move(texture);
-  }
-}
-
 Result<Renderer> Renderer::create(const Session& session) {
   auto made = Picture::create(session);
   if (!made) return failAgain(made.error());
@@ -244,7 +232,6 @@ void Renderer::update(Session& session, spec::Size size) {
   picture.update(session, size);
   reference.update(session);
   session.settings.update(session);
-  thumbnails.update(session);
 }
 
 }  // namespace lambent::editor

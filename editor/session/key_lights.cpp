@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "editor/gizmo/light_gizmos.hpp"
+#include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/lighting/key_lights.hpp"
 #include "runtime/scene/components.hpp"

@@ -282,13 +282,13 @@ void PatchBounces::uploadPatches(gpu::Counters& counters) {
   for (Room& room : rooms_) {
     if (room.room.givenOff().empty()) continue;
     room.first_patch = static_cast<std::uint32_t>(patches.size());
-    const lighting::PatchRegions& regions = room.room.transport()->regions();
-    for (const glm::vec3& radiance : regions.means(room.room.givenOff()))
+    const lighting::Patches& of_room = room.room.transport()->patches();
+    for (const glm::vec3& radiance : of_room.means(room.room.givenOff()))
       patches.emplace_back(radiance, 0.0f);
     if (!room.room.givenOffByBands().empty()) {
       glm::vec4* patch = &patches[room.first_patch];
       const float sign = room.room.hasLamps() ? 1.0f : -1.0f;
-      for (const glm::vec3& radiance : regions.means(room.room.givenOffByBands()))
+      for (const glm::vec3& radiance : of_room.means(room.room.givenOffByBands()))
         patch++->w = sign * static_cast<float>(lighting::luminance(radiance));
     }
     patches.emplace_back(0.0f);

@@ -75,7 +75,7 @@ Result<std::vector<evaluate::SampleValue>> importanceOf(const World& world) {
 TransferValue valueOf(SurfaceView view) {
   if (view == SurfaceView::Importance) return TransferValue::Given;
   if (view == SurfaceView::TransferDc) return TransferValue::Dc;
-  return view == SurfaceView::TransferBand ? TransferValue::BandEnergy : TransferValue::OfCell;
+  return TransferValue::OfCell;
 }
 
 }  // namespace
@@ -93,11 +93,8 @@ Result<void> DataView::update(World& world, const lighting::GroupLights& lights,
   const CodingErrors errors = errorsOf(world);
   legend_ = legendOf(choice, errors.range_end);
   return values_.update(
-      world.residency(), lights,
-      {.value = valueOf(choice.view),
-       .band = choice.view == SurfaceView::TransferBand ? choice.band : 0,
-       .mode = mode},
-      errors.of_cells, [&] { return importanceOf(world); }, counters);
+      world.residency(), lights, {.value = valueOf(choice.view), .mode = mode}, errors.of_cells,
+      [&] { return importanceOf(world); }, counters);
 }
 
 Result<void> DataView::draw(World& world, const spec::View& view, gpu::Counters& counters) {

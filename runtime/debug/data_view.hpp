@@ -14,7 +14,6 @@
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/ecs/registry.hpp"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/transfer_values.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
@@ -53,7 +52,7 @@ class DataView {
                        const Surfaces* shown = nullptr);
 
   bool numbers_;
-  evaluate::Kernels programs_;
+  gpu::Programs programs_;
   evaluate::TransferValues values_;
   gpu::Table draws_, view_;
   gpu::VertexArray no_vertices_;

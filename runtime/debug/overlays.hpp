@@ -11,7 +11,6 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/debug/data_view.hpp"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -59,7 +58,7 @@ class Overlays {
   spec::Size size_;
   gpu::Texture color_;
   gpu::Framebuffer target_;
-  evaluate::Kernels programs_;
+  gpu::Programs programs_;
   std::vector<gpu::Define> defines_;
   gpu::Table lines_, signs_, view_;
   gpu::VertexArray no_vertices_;

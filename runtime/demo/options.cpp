@@ -94,7 +94,7 @@ void declare(CLI::App& app, Options& options, Words& words) {
           [&](const std::string& word) { return takePicture(word, options); });
   addWord(
       app, "--view", "NAME",
-      "What surfaces show: final, irradiance, transfer-dc, transfer-band[:BAND], error, clusters, normals "
+      "What surfaces show: final, irradiance, transfer-dc, error, clusters, normals "
       "or wireframe; an .exr holds the numbers",
       into(options.view, named("--view", frame::parseView)))
       ->default_str("final");

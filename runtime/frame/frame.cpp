@@ -113,7 +113,7 @@ StepCounts::StepCounts() {
     for (const std::string_view name : names) counts_.push_back({.name = name});
   };
   declare({"volumes", "groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
-           "light_probes", "light_probes_risen", "light_probes_occluded", "light_probes_written"});
+           "light_probes", "light_probes_risen", "light_probes_written"});
   declare({"patch_rooms", "patch_rooms_to_come", "patches", "lights_bounced", "patch_draws_gathered"});
   declare({"cells_shaded", "draws_shaded"});
   declare({"neighborhood_grids", "neighborhood_grids_ready", "neighborhood_grids_written",

@@ -59,7 +59,6 @@ struct FrameParts {
 
   // Light at light probes, and bounces by patches.
   LightPlan plan;
-  ApartOcclusion apart_occlusion;
   std::optional<lighting::IncidentLight> incident;  // (before); made once there is something to sample
   lighting::GroupLights group_lights;
   ChangeGate<bool, bool, bool, float> carriers_changed;  // settings that choose carriers

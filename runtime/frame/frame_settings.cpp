@@ -20,7 +20,7 @@ using Kind = SettingRow::Kind;
 
 // The words are in the order of the enums' values.
 constexpr std::array<std::string_view, 3> kTransferWords = {"unshadowed", "shadowed", "full"};
-constexpr std::array<std::string_view, 3> kWindowWords = {"off", "hann", "auto"};
+constexpr std::array<std::string_view, 2> kWindowWords = {"off", "auto"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using S = FrameSettings;
@@ -82,9 +82,9 @@ const std::array kRows = {
                               "the scenes' own lights are dark"}),
     rowFor<&S::window>({.name = "window",
                         .label = "ringing suppression",
-                        .greatest = 2.0,
+                        .greatest = 1.0,
                         .words = kWindowWords,
-                        .help = "Against ringing of the light: auto, off or hann"}),
+                        .help = "Against ringing of the light: auto or off"}),
     SettingRow{
         .name = "keys",
         .label = "key lights",

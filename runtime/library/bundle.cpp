@@ -17,7 +17,6 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/transfer/codebook.hpp"
-#include "runtime/transfer/layout.hpp"
 
 namespace lambent {
 

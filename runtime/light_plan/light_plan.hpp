@@ -90,42 +90,6 @@ Suns sunsOf(const World& world, std::uint32_t most);
 // Makes the plan. `surroundings` is the mean radiance against which bodies count as bright.
 LightPlan makeLightPlan(const World& world, float surroundings, const LightPlanOptions& options = {});
 
-// Lists the proxies of the groups that have one, in the order of the bodies, and the keys of these groups.
-struct BodyProxies {
-  std::vector<const bundle::CaptureProxy*> proxies;
-  std::vector<std::uint64_t> keys;
-};
-BodyProxies proxiesOf(const streaming::Residency& residency);
-
-// Finds what bodies hide of lamps that are shaded per pixel, when these bodies reach a group by their
-// neighborhood grids and are left out of its captures. Shadow cubes occlude the direct light of such lamps;
-// this gives the occlusion for their bounced light. It traces rays from the light probes to the lamps among
-// the bodies' proxies, where anything of this has moved since the last step. No GL.
-class ApartOcclusion {
- public:
-  // Fills IncidentGroup::open of all groups. `proxies` is indexed by CaptureBody::proxy, and `version`
-  // changes when they do. Returns for how many light probes rays were traced.
-  std::size_t update(LightPlan& plan, std::span<const bundle::CaptureProxy* const> proxies,
-                     std::uint64_t version);
-
- private:
-  struct Group {
-    std::vector<glm::vec3> samples_ws;
-    std::vector<lighting::LightCarrier> carriers;
-    std::vector<std::uint32_t> left_out;
-    bool operator==(const Group&) const = default;
-  };
-  struct Inputs {  // all that the shares depend on
-    std::uint64_t version = 0;
-    std::vector<Group> groups;  // empty for groups of which nothing is traced; if all are, so are the rest
-    std::vector<lighting::LocalLight> lights;  // without their power
-    std::vector<glm::mat4> bodies;             // world_from_proxy
-    bool operator==(const Inputs&) const = default;
-  };
-  Inputs traced_;
-  std::vector<std::vector<float>> open_;  // per group, as in IncidentGroup
-};
-
 // Chooses which lights in the scene are shaded per pixel with shadow cubes, and with what share: those within
 // the bounds of a group, and those beside one, within a given number of its radii from its centre. Near that
 // distance the share falls to 0 continuously. No GL.

@@ -1,18 +1,19 @@
 #include "runtime/lighting/capture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/base/threads.hpp"
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_shared.h"
@@ -20,6 +21,81 @@
 #include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
+
+namespace capture {
+
+// Holds what a light capture keeps of a proxy: its bounds, and its levels in the form in which they are
+// drawn. It is made once per proxy and from that proxy alone, so that it stays valid when other proxies come
+// and go. No GL.
+struct PreparedProxy {
+  // A vertex is its position as bits of three floats, then its surface id: the triangle's number in its proxy
+  // + 1, or 0 for a vertex that is no triangle's last corner.
+  using Vertex = std::array<std::uint32_t, 4>;
+  struct Level {
+    std::uint32_t first_vertex = 0;  // index into `vertices`
+    // Three indices of vertices of the level per triangle, the triangles that are seen from one side only
+    // last.
+    std::vector<std::uint32_t> indices;
+    std::size_t front_only = 0;  // the first index of those
+  };
+  ProxyBounds bounds;
+  std::vector<Level> levels;
+  std::vector<Vertex> vertices;
+  std::uint32_t triangle_count = 0;
+
+  static PreparedProxy of(const bundle::CaptureProxy& proxy);
+};
+
+// In the worst case each triangle has three corners of its own.
+static_assert(3 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
+
+// A triangle's id comes from its last corner, so each triangle needs a corner that is last in no other.
+// Closed meshes have half as many vertices as triangles, so about half of the triangles need an extra vertex.
+PreparedProxy PreparedProxy::of(const bundle::CaptureProxy& proxy) {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  PreparedProxy made{.bounds = ProxyBounds::of(proxy),
+                     .levels = {},
+                     .vertices = {},
+                     .triangle_count = static_cast<std::uint32_t>(proxy.triangles.size())};
+  for (const bundle::ProxyLevel& level : proxy.levels) {
+    const std::size_t first = made.vertices.size();
+    Level& drawn = made.levels.emplace_back();
+    drawn.first_vertex = static_cast<std::uint32_t>(first);
+    std::vector<std::uint32_t> shared(proxy.positions.size(), kNone);  // the vertex at each position
+    const auto make = [&](std::uint32_t corner) {
+      const glm::vec3& p = proxy.positions[corner];
+      made.vertices.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                               std::bit_cast<std::uint32_t>(p.z), 0});
+      return static_cast<std::uint32_t>(made.vertices.size() - 1 - first);
+    };
+    const auto share = [&](std::uint32_t corner) {
+      if (shared[corner] == kNone) shared[corner] = make(corner);
+      return shared[corner];
+    };
+    const auto isFree = [&](std::uint32_t corner) {
+      return shared[corner] == kNone || made.vertices[first + shared[corner]][3] == 0;
+    };
+    std::vector<std::uint32_t> front_only;
+    for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
+      const bundle::ProxyTriangle& triangle = proxy.triangles[t];
+      const auto usable = [&](std::uint32_t v) { return isFinite(proxy.positions[v]); };
+      if (!std::ranges::all_of(triangle.vertices, usable)) continue;
+      std::array<std::uint32_t, 3> corners = triangle.vertices;
+      for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
+        std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+      const std::uint32_t last = isFree(corners[2]) ? share(corners[2]) : make(corners[2]);
+      made.vertices[first + last][3] = t + 1;
+      std::vector<std::uint32_t>& indices = triangle.front_only ? front_only : drawn.indices;
+      for (const std::uint32_t vertex : {share(corners[0]), share(corners[1]), last})
+        indices.push_back(vertex);
+    }
+    drawn.front_only = drawn.indices.size();
+    drawn.indices.insert(drawn.indices.end(), front_only.begin(), front_only.end());
+  }
+  return made;
+}
+
+}  // namespace capture
 
 namespace {
 
@@ -57,46 +133,6 @@ DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const Cap
   record.tile_y = tile.y | (tile.y + tile.texels.height() * options.subsamples) << 16;
   return record;
 }
-
-enum class Side : std::uint8_t { None, Bright, Dark };
-
-// Finds which side of a body's triangles a point sees, so that dark sides that cannot show are not drawn. It
-// works once per point and body, however many faces of the cube the body shows on.
-class SidesSeen {
- public:
-  explicit SidesSeen(std::size_t bodies) : bodies_(bodies) {}
-
-  // Expects the draws of one point after the other. The result is valid until the next call.
-  std::span<const Side> look(const Draw& draw, const PreparedLevel& level, std::uint32_t point,
-                             const CaptureBody& body, const glm::vec3& point_ws) {
-    if (point != point_) sides_.clear();
-    point_ = point;
-    Body& seen = bodies_[draw.body];
-    const auto sidesOf = [&] { return std::span(sides_).subspan(seen.first, level.triangles.size()); };
-    if (seen.point == point) return sidesOf();
-    if (seen.point == kNone) seen.proxy_from_world = glm::inverse(glm::dmat4(body.world_from_proxy));
-    seen.point = point;
-    seen.first = sides_.size();
-    const glm::dvec4 point_proxy = seen.proxy_from_world * glm::dvec4(glm::dvec3(point_ws), 1.0);
-    for (const LevelTriangle& triangle : level.triangles) {
-      const bool bright = glm::dot(triangle.plane, point_proxy) > 0.0;
-      const bool hidden = !bright && (triangle.front_only || (level.closed && draw.from_outside));
-      sides_.push_back(hidden ? Side::None : bright ? Side::Bright : Side::Dark);
-    }
-    return sidesOf();
-  }
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Body {
-    std::uint32_t point = kNone;  // the point for which `first` is valid
-    std::size_t first = 0;        // index of its first side
-    glm::dmat4 proxy_from_world{1.0};
-  };
-  std::vector<Body> bodies_;
-  std::uint32_t point_ = kNone;
-  std::vector<Side> sides_;  // of all bodies that the current point sees
-};
 
 }  // namespace
 
@@ -166,19 +202,19 @@ void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, g
   });
   bounds_.clear();
   triangle_count_ = 0;
-  std::vector<Vertex> vertices;
+  std::vector<PreparedProxy::Vertex> vertices;
   for (Proxy& made : proxies_) {
     made.first_triangle = triangle_count_;
     made.first_vertex = static_cast<std::uint32_t>(vertices.size());
-    for (Vertex vertex : made.prepared->vertices) {
-      if (vertex[3] != 0 && vertex[3] != kBlackId) vertex[3] += triangle_count_;
+    for (PreparedProxy::Vertex vertex : made.prepared->vertices) {
+      if (vertex[3] != 0) vertex[3] += triangle_count_;
       vertices.push_back(vertex);
     }
     bounds_.push_back(made.prepared->bounds);
     triangle_count_ += made.prepared->triangle_count;
   }
-  vertices_.assign(std::span<const Vertex>(vertices));
-  counters.uploaded_bytes += vertices.size() * sizeof(Vertex);
+  vertices_.assign(std::span<const PreparedProxy::Vertex>(vertices));
+  counters.uploaded_bytes += vertices.size() * sizeof(PreparedProxy::Vertex);
 }
 
 capture::BodySphere Capture::sphereOf(const CaptureBody& body) const {
@@ -260,46 +296,29 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   run_.word_count = lookups.size() / kLookupsPerWord;
 
   std::vector<DrawRecord> draws;
-  std::vector<std::uint32_t>&indices = bright_then_dark_, &dark = dark_;
+  std::vector<std::uint32_t>&indices = indices_of_draws_, &front_only = front_only_;
   indices.clear();
   draws.reserve(plan.draws.size());
-  page_indices_.assign(plan.pages.size(), {});
-  SidesSeen sides_of(bodies.size());
-  for (std::size_t i = 0; i < plan.pages.size(); ++i) {
-    const Page& page = plan.pages[i];
-    for (std::uint32_t p = page.first_point, d = page.first_draw; p < page.first_point + page.point_count;
-         ++p) {
-      const PlannedPoint& planned = plan.points[p];
-      const std::uint32_t end_tile = planned.first_tile + planned.tile_count;
-      for (; d < page.first_draw + page.draw_count && plan.draws[d].tile < end_tile; ++d) {
-        const Draw& draw = plan.draws[d];
-        const CaptureBody& body = bodies[draw.body];
-        DrawRecord& record = draws.emplace_back(drawRecord(options_, plan.tiles[draw.tile], body, planned,
-                                                           points[planned.point].position_ws, page.height));
-        const Proxy& proxy = proxies_[body.proxy];
-        record.first_vertex = proxy.first_vertex + proxy.prepared->levels[draw.level].first_vertex;
-      }
-    }
-    dark.clear();
-    page_indices_[i].first_bright = static_cast<std::uint32_t>(indices.size());
+  page_indices_.clear();
+  for (const Page& page : plan.pages) {
+    front_only.clear();
+    PageIndices& range = page_indices_.emplace_back();
+    range.first = static_cast<std::uint32_t>(indices.size());
     for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
       const Draw& draw = plan.draws[d];
-      const PreparedLevel& level = proxies_[bodies[draw.body].proxy].prepared->levels[draw.level];
-      const std::uint32_t point = plan.tiles[draw.tile].point;
-      const std::span<const Side> sides =
-          sides_of.look(draw, level, point, bodies[draw.body], points[point].position_ws);
-      for (std::size_t t = 0; t < sides.size(); ++t) {
-        if (sides[t] == Side::None) continue;
-        const LevelTriangle& triangle = level.triangles[t];
-        const bool bright = sides[t] == Side::Bright;
-        const std::uint32_t last = bright ? triangle.corners[2] : triangle.black;
-        for (const std::uint32_t v : {triangle.corners[0], triangle.corners[1], last})
-          (bright ? indices : dark).push_back(d << kVertexBits | v);
-      }
+      const Tile& tile = plan.tiles[draw.tile];
+      const Proxy& proxy = proxies_[bodies[draw.body].proxy];
+      const PreparedProxy::Level& level = proxy.prepared->levels[draw.level];
+      DrawRecord& record = draws.emplace_back(drawRecord(options_, tile, bodies[draw.body],
+                                                         plan.points[run_.records[tile.point]],
+                                                         points[tile.point].position_ws, page.height));
+      record.first_vertex = proxy.first_vertex + level.first_vertex;
+      for (std::size_t i = 0; i < level.indices.size(); ++i)
+        (i < level.front_only ? indices : front_only).push_back(d << kVertexBits | level.indices[i]);
     }
-    page_indices_[i].first_dark = static_cast<std::uint32_t>(indices.size());
-    indices.insert(indices.end(), dark.begin(), dark.end());
-    page_indices_[i].end = static_cast<std::uint32_t>(indices.size());
+    range.front_only = static_cast<std::uint32_t>(indices.size());
+    indices.insert(indices.end(), front_only.begin(), front_only.end());
+    range.end = static_cast<std::uint32_t>(indices.size());
   }
   load_.triangles = indices.size() / 3;
 
@@ -340,7 +359,6 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
   glScissor(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
   constexpr GLuint kNothing[4] = {0, 0, 0, 0};
@@ -359,16 +377,20 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   // it.
   constexpr float kDarkDepth = 0.9999f;
   const PageIndices& range = page_indices_[index];
-  const auto draw = [&](std::uint32_t first, std::uint32_t end, float depth) {
-    if (first == end) return;
+  const auto draw = [&](GLenum culled, std::uint32_t end, float depth) {
+    if (range.first == end) return;
+    glCullFace(culled);
     glUniform1f(kDepth, depth);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::size_t{first} * sizeof(std::uint32_t)));
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - range.first), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
     ++counters.draws;
     ++counters.draw_calls;
   };
-  draw(range.first_bright, range.first_dark, 1.0f);
-  draw(range.first_dark, range.end, kDarkDepth);
+  glEnable(GL_CULL_FACE);
+  draw(GL_BACK, range.end, 1.0f);
+  draw(GL_FRONT, range.front_only, kDarkDepth);
+  glCullFace(GL_BACK);
+  glDisable(GL_CULL_FACE);
   glDepthFunc(GL_LESS);
   for (GLenum i = 0; i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
@@ -403,8 +425,7 @@ void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance
   glUniform1ui(kFirstPoint, page.first_point);
   bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
   bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
-  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights_);
-  sky_.bindTables();
+  sky_.bindTables(weights_);
   points_.bindStorage(kBindPoints);
   results_.bindStorage(kBindResults);
   glDispatchCompute(page.point_count, 1, 1);
@@ -441,13 +462,6 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
       out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
   }
   return lights;
-}
-
-sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {
-  sky_.makeTurned(environment, world_from_light, weights_);
-  std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));
-  sky_.light().read(0, std::span(sky));
-  return lightFrom(sky);
 }
 
 sh::LightVector Capture::lightFrom(std::span<const glm::vec4> coefficients) const {

@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
 
 #include "runtime/base/result.hpp"
@@ -30,6 +29,8 @@
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting::capture {
+
+struct PreparedProxy;
 
 // Reads results back from the GPU without stalling: they are copied into mapped memory, and a fence tells
 // when they have arrived. Sizes are in bytes. A Readback must not outlive its context.
@@ -119,7 +120,7 @@ namespace lambent::lighting {
 
 // Owns the sky as the light capture sees it: one small box-filtered cube map in world axes for all points,
 // without suns. It takes an environment and provides, per texel (in the order of sh/image_layout.hpp), the
-// radiance and the weights that project it to harmonics, and the projected sum. Two dispatches remake them
+// radiance, and its sum projected to harmonics. Two dispatches remake them
 // when the environment was turned, faded or replaced. Render thread only. create() fails if a shader does not
 // compile on this device.
 class CaptureSky {
@@ -128,14 +129,10 @@ class CaptureSky {
   static Result<CaptureSky> create(const CaptureOptions& options, const Environment& environment);
 
   // Remakes the cube if the environment changed, and returns whether it did. `weights` is
-  // [texel][coefficient] from sh::cubeWeights.
+  // [texel][coefficient] from sh::cubeWeights, padded to fours.
   bool update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters);
-  // Makes the cube with the environment maps turned by any rotation, for measurements. The next update()
-  // remakes it.
-  void makeTurned(const Environment& environment, const glm::mat3& world_from_light,
-                  const gpu::Buffer& weights);
-  // Binds the texels and weights that capture_project.comp reads.
-  void bindTables();
+  // Binds the texels and the weights that capture_project.comp reads.
+  void bindTables(const gpu::Buffer& weights);
   // Returns one vec4 per coefficient: the sum of texels times weights.
   const gpu::Buffer& light() const { return light_; }
 
@@ -144,9 +141,9 @@ class CaptureSky {
 
   CaptureOptions options_;
   gpu::Program program_, light_program_;
-  std::array<gpu::Texture, Environment::kSets> environment_maps_;  // light frame, float32, mip maps
+  std::array<gpu::Texture, Environment::kSets> environment_maps_;  // light frame, mip maps
   gpu::Sampler sampler_;
-  gpu::Buffer texels_, weights_, light_;
+  gpu::Buffer texels_, light_;
   gpu::Handle<gpu::TextureTraits> texels_view_, weights_view_;
   std::uint64_t version_ = 0;  // version of the environment that the cube shows; 0: none yet
   std::uint64_t lights_ = 0;   // version of the lights in environment_maps_
@@ -168,12 +165,12 @@ class Capture {
   // the body drawn at all.
   capture::BodySphere sphereOf(const CaptureBody& body) const;
 
-  // Draws and projects. Each page of cube maps takes at most two draws (surfaces with and without a dark
-  // side) and two dispatches, and two more dispatches when the environment changed. `triangle_radiance` holds
-  // a vec4 per triangle; values that are not finite count as black. Points that see no body cost the GPU
-  // nothing. Changes the bound framebuffer, viewport, depth and culling state. Fails if it is called while
-  // pending(), if there are fewer radiances than triangles, or if 2^21 bodies or more would be drawn (counted
-  // per face of a point).
+  // Draws and projects. Each page of cube maps takes at most two draws (bright sides, then dark ones) and two
+  // dispatches, and two more dispatches when the environment changed. `triangle_radiance` holds a vec4 per
+  // triangle; values that are not finite count as black. Points that see no body cost the GPU nothing.
+  // Changes the bound framebuffer, viewport, depth and culling state. Fails if it is called while pending(),
+  // if there are fewer radiances than triangles, or if 2^21 bodies or more would be drawn (counted per face
+  // of a point).
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
@@ -188,10 +185,6 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // Returns the sky as its texels represent it, turned by the given rotation and without the correction to
-  // the exact light, so that the error of the texels can be measured. Waits for the GPU. Must not be called
-  // while pending().
-  sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
   struct Proxy {
@@ -200,7 +193,7 @@ class Capture {
     std::uint32_t first_triangle = 0, first_vertex = 0;
   };
   struct PageIndices {
-    std::uint32_t first_bright = 0, first_dark = 0, end = 0;
+    std::uint32_t first = 0, front_only = 0, end = 0;  // triangles seen from one side only come last
   };
   // Holds what take() needs to know about the run.
   struct Run {
@@ -230,14 +223,14 @@ class Capture {
   gpu::Table vertices_, draws_, indices_, points_, texels_, values_, lookups_, results_, hidden_;
   gpu::Buffer weights_;
   using View = gpu::Handle<gpu::TextureTraits>;
-  View vertices_view_, draws_view_, values_view_, texels_view_, weights_view_;
+  View vertices_view_, draws_view_, values_view_, texels_view_;
   capture::Readback readback_;
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;
   std::uint32_t triangle_count_ = 0;
   std::vector<PageIndices> page_indices_;
   // These lists of indices are drawn once they are uploaded. They are members so that their memory is reused.
-  std::vector<std::uint32_t> bright_then_dark_, dark_;
+  std::vector<std::uint32_t> indices_of_draws_, front_only_;
 
   bool pending_ = false;
   Run run_;

@@ -4,8 +4,8 @@
 
 layout(binding = kUnitVertices) uniform usamplerBuffer vertices;
 layout(binding = kUnitDraws) uniform usamplerBuffer draws;
-layout(location = 1) uniform float depth;  // 1, or a little less for surfaces that lose against others in the
-                                           // same place
+layout(location = 1) uniform float depth;  // 1, or a little less for dark sides, which lose against bright ones
+                                           // in the same place
 layout(location = 0) uniform vec2 clip_from_pixel;  // pixel * clip_from_pixel - 1 is the pixel's first edge
                                                     // in clip space
 
@@ -30,5 +30,5 @@ void main() {
   gl_ClipDistance[1] = end.x * w - x;
   gl_ClipDistance[2] = y - first.y * w;
   gl_ClipDistance[3] = end.y * w - y;
-  surface_id = vertex.w;
+  surface_id = depth < 1.0 ? kBlackId : vertex.w;
 }

@@ -24,8 +24,6 @@ constexpr double kLevelErrorShare = 0.5;  // of a texel's width; levels keep sol
 // These give the near plane as a share of the distance to the nearest body's box, or of the radius of a body
 // that contains the point. Reversed depth keeps its precision.
 constexpr double kLocalShare = 1e-3, kLeastLocalShare = 1e-9;
-// Points nearer to a body's box than this share of its radius count as inside.
-constexpr double kOutsideShare = 1e-6;
 // Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
 constexpr double kRectMargin = 1e-4;
 
@@ -229,8 +227,7 @@ class PointPlanner {
       const Sphere sphere = seenFrom(point.position_ws, spheres_[b]);
       const Corners corners = seenFrom(point.position_ws, corners_[b]);
       const double distance_m = boxDistance(corners);
-      seen_.push_back({b, levelFor(options_, sphere, bounds), distance_m > kOutsideShare * sphere.radius_m,
-                       sphere, corners});
+      seen_.push_back({b, levelFor(options_, sphere, bounds), sphere, corners});
       near_m = std::min(near_m, std::max(kLocalShare * distance_m, kLeastLocalShare * sphere.radius_m));
     }
     const auto first_tile = static_cast<std::uint32_t>(plan_.tiles.size());
@@ -244,7 +241,6 @@ class PointPlanner {
  private:
   struct Seen {
     std::uint32_t body, level;
-    bool from_outside;
     Sphere sphere;
     Corners corners;
   };
@@ -262,7 +258,7 @@ class PointPlanner {
       const auto tile = static_cast<std::uint32_t>(plan_.tiles.size());
       plan_.tiles.push_back({.point = index, .face = face, .texels = rect});
       for (const auto& [seen, own] : on_face_)
-        if (overlap(own, rect)) plan_.draws.push_back({tile, seen->body, seen->level, seen->from_outside});
+        if (overlap(own, rect)) plan_.draws.push_back({tile, seen->body, seen->level});
     }
   }
 

@@ -1,9 +1,9 @@
-// Projects texels to spherical harmonics: bodies with the weights of sh::cubeWeights, Omega (2 y(centre) -
-// mean y), and the sky with its own weights (capture_sky.comp). A work group handles a point; an invocation
-// handles four coefficients of every kSlices-th texel. Texels without a tile see only sky and are skipped:
-// the results are the bodies' light and the light of the sky that they hide,
+// Projects texels to spherical harmonics with the weights of sh::cubeWeights, Omega (2 y(centre) - mean y). A
+// work group handles a point; an invocation handles four coefficients of every kSlices-th texel. Texels
+// without a tile see only sky and are skipped: the results are the bodies' light and the light of the sky
+// that they hide,
 //   results[2 (point ORDER² + i)]      xyz: sum of w_i * bodies; w: sum of the open shares of texels
-//   results[2 (point ORDER² + i) + 1]  xyz: sum of v_i * hidden share * sky; w: sum of v_i * hidden share
+//   results[2 (point ORDER² + i) + 1]  xyz: sum of w_i * hidden share * sky; w: sum of w_i * hidden share
 // Sums have a fixed order.
 #include "capture_shared.h"
 
@@ -13,7 +13,6 @@ layout(binding = kUnitValues) uniform samplerBuffer values;
 layout(binding = kUnitTexels) uniform usamplerBuffer texels;
 layout(binding = kUnitSky) uniform samplerBuffer sky;
 layout(binding = kUnitWeights) uniform samplerBuffer weights;
-layout(binding = kUnitSkyWeights) uniform samplerBuffer sky_weights;
 layout(std430, binding = kBindPoints) readonly buffer Points { PointRecord points[]; };
 layout(std430, binding = kBindResults) writeonly buffer Results { vec4 results[]; };
 
@@ -31,10 +30,10 @@ void main() {
       int at = int(point.first_texel + k);
       vec4 value = texelFetch(values, at);
       int texel = int(texelFetch(texels, at).y);
-      int at_weights = texel * int(kQuads) + int(quad);
+      vec4 weight = texelFetch(weights, texel * int(kQuads) + int(quad));
       vec4 light = vec4(value.rgb, 0.0), behind = value.a * vec4(texelFetch(sky, texel).rgb, 1.0);
-      bodies += outerProduct(light, texelFetch(weights, at_weights));
-      hidden += outerProduct(behind, texelFetch(sky_weights, at_weights));
+      bodies += outerProduct(light, weight);
+      hidden += outerProduct(behind, weight);
       bodies[0].w += 1.0 - value.a;
     }
     for (uint i = 0u; i < 4u; ++i) {

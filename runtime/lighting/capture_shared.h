@@ -29,20 +29,17 @@ LAMBENT_CONSTANT kBindValues = 2u;    // vec4 per TexelRecord: mean radiance of 
 LAMBENT_CONSTANT kBindLookups = 3u;   // uvec2: pixel x | y << 16, or kNoPixel; bits of the light's depth
 LAMBENT_CONSTANT kBindHidden = 4u;    // uint per kLookupsPerWord lookups, one bit each
 // These are bindings of capture_project.comp.
-LAMBENT_CONSTANT kUnitValues = 0u;      // rgba32f
-LAMBENT_CONSTANT kUnitTexels = 1u;      // rg32ui: TexelRecord
-LAMBENT_CONSTANT kUnitSky = 2u;         // rgba32f per texel of the cube, box-filtered
-LAMBENT_CONSTANT kUnitWeights = 3u;     // rgba32f: [texel][coefficient], padded to fours, sh::cubeWeights
-LAMBENT_CONSTANT kUnitSkyWeights = 4u;  // rgba32f: the weights for the sky, see capture_sky.comp
-LAMBENT_CONSTANT kBindPoints = 0u;      // PointRecord
-LAMBENT_CONSTANT kBindResults = 1u;     // vec4, see capture_project.comp
+LAMBENT_CONSTANT kUnitValues = 0u;   // rgba32f
+LAMBENT_CONSTANT kUnitTexels = 1u;   // rg32ui: TexelRecord
+LAMBENT_CONSTANT kUnitSky = 2u;      // rgba32f per texel of the cube, box-filtered
+LAMBENT_CONSTANT kUnitWeights = 3u;  // rgba32f: [texel][coefficient], padded to fours, sh::cubeWeights
+LAMBENT_CONSTANT kBindPoints = 0u;   // PointRecord
+LAMBENT_CONSTANT kBindResults = 1u;  // vec4, see capture_project.comp
 
 // These are bindings of capture_sky.comp.
 LAMBENT_CONSTANT kUnitFirstProbes = 0u;
 LAMBENT_CONSTANT kUnitSecondProbes = 1u;
 LAMBENT_CONSTANT kBindSky = 0u;
-LAMBENT_CONSTANT kBindWeights = 1u;
-LAMBENT_CONSTANT kBindSkyWeights = 2u;
 LAMBENT_CONSTANT kBindSkyLight = 3u;  // vec4 per coefficient
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;

@@ -5,7 +5,7 @@
 layout(local_size_x = ORDER * ORDER) in;
 layout(location = 0) uniform uint texel_count;
 layout(binding = kUnitSky) uniform samplerBuffer sky;
-layout(binding = kUnitSkyWeights) uniform samplerBuffer sky_weights;
+layout(binding = kUnitWeights) uniform samplerBuffer weights;
 layout(std430, binding = kBindSkyLight) writeonly buffer SkyLight { vec4 sky_light[]; };
 
 const uint kQuads = (ORDER * ORDER + 3) / 4;
@@ -17,7 +17,7 @@ void main() {
   for (uint first = 0u; first < texel_count; first += kStage) {
     vec3 stage = vec3(0.0);
     for (uint k = first; k < min(first + kStage, texel_count); ++k)
-      stage += texelFetch(sky_weights, int(k * kQuads + i / 4u))[i % 4u] * texelFetch(sky, int(k)).rgb;
+      stage += texelFetch(weights, int(k * kQuads + i / 4u))[i % 4u] * texelFetch(sky, int(k)).rgb;
     sum += stage;
   }
   sky_light[i] = vec4(sum, 0.0);

@@ -68,53 +68,29 @@ Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
 Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights) {
   const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
-  // Holds, for each environment map, the set and the index in it that it comes from; kSets stands for an
-  // index in `loaded`.
-  std::vector<std::array<std::size_t, 2>> origins;
-  std::vector<LoadedProbe> loaded;
-  std::array<std::vector<bool>, kSets> taken;
-  for (std::size_t i = 0; i < kSets; ++i) taken[i].assign(sets_[i].known.size(), false);
-  const auto findKnown =
-      [&](const EnvironmentMapSource& source) -> std::optional<std::array<std::size_t, 2>> {
-    for (std::size_t i = 0; i < kSets; ++i)
-      for (std::size_t k = 0; k < sets_[i].known.size(); ++k)
-        if (!taken[i][k] && sets_[i].known[k].source == source) return std::array{i, k};
-    return std::nullopt;
-  };
-  for (const auto* list : given)
-    for (const spec::Light& light : *list) {
-      const auto* file = std::get_if<spec::EnvironmentMapLight>(&light);
-      if (!file) continue;
-      EnvironmentMapSource source = sourceOf(*file);
-      if (const auto at = findKnown(source)) {
-        taken[(*at)[0]][(*at)[1]] = true;
-        origins.push_back(*at);
-        continue;
-      }
-      Result<spec::EnvironmentMap> environment_map = spec::loadEnvironmentMap(*file);
-      if (!environment_map) return failAgain(environment_map.error());
-      origins.push_back({kSets, loaded.size()});
-      KnownEnvironmentMap known{
-          std::move(source),
-          sh::projectImage(sh::kMaxOrder, environment_map->layout,
-                           static_cast<int>(environment_map->image.width),
-                           static_cast<int>(environment_map->image.height), environment_map->image.texels),
-          bundle::checksum(std::as_bytes(std::span(environment_map->image.texels)))};
-      loaded.push_back({std::move(*environment_map), std::move(known)});
-    }
-
   std::array<Set, kSets> sets;
-  auto origin = origins.begin();
   for (std::size_t i = 0; i < kSets; ++i) {
     Set& set = sets[i];
-    Result<spec::DistantLights> made =
-        spec::loadDistantLights(*given[i], [&](const spec::EnvironmentMapLight&) {
-          const auto [from, place] = *origin++;
-          set.known.push_back(std::move(from == kSets ? loaded[place].known : sets_[from].known[place]));
-          return Result<spec::EnvironmentMap>(std::move(
-              from == kSets ? loaded[place].environment_map : sets_[from].lights.environment_maps[place]));
-        });
-    set.lights = std::move(*made);  // cannot fail: nothing was left to read
+    const auto load = [&](const spec::EnvironmentMapLight& light) -> Result<spec::EnvironmentMap> {
+      EnvironmentMapSource source = sourceOf(light);
+      for (const Set& before : sets_)
+        for (std::size_t k = 0; k < before.known.size(); ++k)
+          if (before.known[k].source == source) {
+            set.known.push_back(before.known[k]);
+            return before.lights.environment_maps[k];
+          }
+      Result<spec::EnvironmentMap> loaded = spec::loadEnvironmentMap(light);
+      if (!loaded) return loaded;
+      const spec::RgbImage& image = loaded->image;
+      set.known.push_back({std::move(source),
+                           sh::projectImage(sh::kMaxOrder, loaded->layout, static_cast<int>(image.width),
+                                            static_cast<int>(image.height), image.texels),
+                           bundle::checksum(std::as_bytes(std::span(image.texels)))});
+      return loaded;
+    };
+    Result<spec::DistantLights> made = spec::loadDistantLights(*given[i], load);
+    if (!made) return failAgain(made.error());
+    set.lights = std::move(*made);
     part(set);
   }
   sets_ = std::move(sets);

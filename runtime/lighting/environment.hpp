@@ -139,10 +139,6 @@ class Environment {
     sh::LightVector sky;
     std::uint64_t checksum = 0;  // of the texels
   };
-  struct LoadedProbe {
-    spec::EnvironmentMap environment_map;
-    KnownEnvironmentMap known;
-  };
   struct Set {
     spec::DistantLights lights;
     std::vector<KnownEnvironmentMap> known;  // in the order of lights.environment_maps

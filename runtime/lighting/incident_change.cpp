@@ -21,14 +21,15 @@ float turnBetween(const glm::mat4& a, const glm::mat4& b) {
 
 }  // namespace
 
-BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const BodyPose& after,
-                    const glm::vec3& place_after, float radius_m) {
+BodyChange changeOf(const IncidentBody& before, const glm::vec3& place_before, const IncidentBody& after,
+                    const glm::vec3& place_after) {
   constexpr float kHalfTurn_rad = std::numbers::pi_v<float>;
+  const float radius_m = after.radius_m;
   const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
   const glm::vec3 offset_before = before.center_ws - place_before,
                   offset_after = after.center_ws - place_after;
   const float moved = glm::distance(offset_before, offset_after) +
-                      radius_m * turnBetween(before.world_from_proxy, after.world_from_proxy);
+                      radius_m * turnBetween(before.body.world_from_proxy, after.body.world_from_proxy);
   const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
   // Inside the body's sphere nothing can be ruled out.
   if (distance <= radius_m)

@@ -14,7 +14,6 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
 constexpr std::size_t kGone = ~std::size_t{0};
 
 // Returns whether either part of a light (with and without key lights) changed by more than kLeastChange of
@@ -28,6 +27,11 @@ bool differs(const DividedLight& now, const DividedLight& before) {
     power += glm::dot(whole, whole);
   }
   return change > double{kLeastChange} * double{kLeastChange} * power;
+}
+
+bool samePose(const IncidentBody& a, const IncidentBody& b) {
+  return a.body.world_from_proxy == b.body.world_from_proxy && a.center_ws == b.center_ws &&
+         a.radiance_drift == b.radiance_drift;
 }
 
 void add(sh::LightVector& sum, const sh::LightVector& light, float factor) {
@@ -58,7 +62,7 @@ void IncidentLight::forget() {
   counts_.waiting = std::max(counts_.waiting, 1u);  // not at rest before changes were looked for
 }
 
-void IncidentLight::leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades) {
+void IncidentLight::leaveOut(Sample& sample, const std::vector<std::uint64_t>& left_out, bool fades) {
   if (sample.left_out == left_out) return;
   sample.left_out = left_out;
   sample.fade_begins = fades && sample.version != 0;
@@ -117,41 +121,6 @@ void IncidentLight::followGroups(std::span<const IncidentGroup> groups) {
   }
 }
 
-// Renumbers the bodies in all that is kept. Bodies that are gone are placed behind all others.
-void IncidentLight::followBodies(std::span<const IncidentBody> bodies) {
-  if (std::ranges::equal(bodies, body_keys_, {}, &IncidentBody::key)) return;
-  std::vector<std::uint32_t> now(body_keys_.size(), CapturePoint::kNoBody);
-  std::vector<bool> taken(bodies.size(), false);
-  for (std::size_t b = 0; b < body_keys_.size(); ++b)
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (!taken[i] && bodies[i].key == body_keys_[b]) {
-        now[b] = static_cast<std::uint32_t>(i);
-        taken[i] = true;
-        break;
-      }
-  const auto place = [&](std::uint32_t body) {
-    return body < now.size() ? now[body] : CapturePoint::kNoBody;
-  };
-  const auto renumber = [&](std::vector<std::uint32_t>& left_out) {
-    for (std::uint32_t& body : left_out) body = place(body);
-    std::erase(left_out, CapturePoint::kNoBody);
-    std::ranges::sort(left_out);
-  };
-  const auto renumberDrawn = [&](Drawn& drawn) {
-    for (SeenBody& seen : drawn.seen) seen.body = place(seen.body);
-    std::ranges::stable_sort(drawn.seen, {}, &SeenBody::body);
-    renumber(drawn.left_out);
-  };
-  for (Group& group : groups_)
-    for (Sample& sample : group.samples) {
-      renumber(sample.left_out);
-      if (sample.drawn) renumberDrawn(*sample.drawn);
-    }
-  for (Request& request : requests_) renumberDrawn(request.drawn);
-  body_keys_.clear();
-  for (const IncidentBody& body : bodies) body_keys_.push_back(body.key);
-}
-
 void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
   followGroups(groups);
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -175,15 +144,11 @@ void IncidentLight::update(const Environment& environment, std::span<const Incid
   noticeLights(groups, lights);
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s)
-      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights,
-                   groups[g].open.empty()
-                       ? std::span<const float>()
-                       : std::span(groups[g].open).subspan(s * lights.size(), lights.size()));
+      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights);
 }
 
 void IncidentLight::updateSample(Sample& sample, const Group& group, const Environment& environment,
-                                 const glm::vec3& position_ws, std::span<const LocalLight> lights,
-                                 std::span<const float> open) {
+                                 const glm::vec3& position_ws, std::span<const LocalLight> lights) {
   ++counts_.samples;
   const bool lit = std::ranges::any_of(group.carriers, &LightCarrier::harmonics);
   if (sample.fade_begins) {
@@ -206,14 +171,12 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   // Where bodies are in sight, a turned sky waits for its capture.
   const bool new_sky = !sample.drawn && sample.environment != environment.version();
   const bool moved = lit && sample.position_ws != position_ws;
-  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights &&
-      std::ranges::equal(sample.open, open))
+  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights)
     return;
   sample.drawn_anew = false;
   sample.position_ws = position_ws;
   sample.environment = environment.version();
   sample.lights = group.lights;
-  sample.open.assign(open.begin(), open.end());
 
   const auto visible = [&](const std::vector<std::int32_t> Drawn::*queries, std::size_t index) {
     if (!sample.drawn || index >= ((*sample.drawn).*queries).size()) return 1.0f;
@@ -236,7 +199,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     const sh::LightVector light = lightAt(lights[k], position_ws, order_);
     const float apart = group.carriers[k].apart();
     add(now.rest, light, (1.0f - apart) * share);
-    if (apart > 0.0f) add(now.key, light, apart * share * (open.empty() ? 1.0f : open[k]));
+    if (apart > 0.0f) add(now.key, light, apart * share);
   }
   if (fading) {
     ++counts_.fading;
@@ -281,20 +244,21 @@ Result<void> IncidentLight::capture(const Environment& environment, const Incide
                                     gpu::Counters& counters) {
   const auto& [groups, bodies, lights] = scene;
   counts_.captured = 0;
-  followBodies(bodies);
   if (!requests_.empty()) return {};  // the last capture is still on its way
   const bool moves = somethingMoves(groups, bodies), shines = somethingShines(environment, bodies);
   if (!moves && !shines && nothing_to_draw_) return {};
   counts_.waiting = 0;
   const float least_change = moves ? kMovingChange : kRestingChange;
   noticeBodies(bodies);
+  std::vector<LeftOut> left_out;
+  for (const IncidentGroup& group : groups) left_out.push_back(leftOutOf(group));
   std::vector<Wanted> wanted;
-  for (const Wanted& look : lookAround(environment, groups, lights)) {
+  for (const Wanted& look : lookAround(environment, groups, left_out, lights)) {
     const IncidentGroup& group = groups[look.group];
     Sample& sample = groups_[look.group].samples[look.sample];
     if (look.change < 0.0f) {
       if (sample.drawn) ++counts_.waiting;  // for the next step, which finds the light unoccluded
-      leaveOut(sample, group.left_out, group.fades && sample.drawn.has_value());
+      leaveOut(sample, left_out[look.group].keys, group.fades && sample.drawn.has_value());
       sample.drawn_anew |= sample.drawn.has_value();
       sample.drawn.reset();
     } else if (look.change > least_change) {
@@ -326,10 +290,10 @@ Result<void> IncidentLight::capture(const Environment& environment, const Incide
     now.environment = environment.version();
     now.lights = groups_[one.group].lights;
     now.renewal = renewal_;
-    now.left_out = group.left_out;
+    now.left_out = left_out[one.group].keys;
     now.fades = group.fades;
-    seeFrom(point.position_ws, ignoredBy(group, bodies.size()), seen);
-    for (const std::uint32_t body : seen) now.seen.push_back({body, bodies_[body].pose});
+    seeFrom(point.position_ws, left_out[one.group].ignored, seen);
+    for (const std::uint32_t body : seen) now.seen.push_back(bodies_[body].now);
     askForLights(environment, group, lights, point, now);
     requests_.push_back({one.group, one.sample, std::move(now)});
   }
@@ -339,30 +303,20 @@ Result<void> IncidentLight::capture(const Environment& environment, const Incide
 }
 
 void IncidentLight::noticeBodies(std::span<const IncidentBody> bodies) {
-  bodies_.follow(bodies, &IncidentBody::key);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const IncidentBody& now = bodies[b];
-    Body& body = bodies_[b];
-    body.sphere = capture_.sphereOf(now.body);
-    body.radius_m = now.radius_m;
-    body.brightness = now.body.brightness;
-    BodyPose& pose = body.pose;
-    if (pose.version != 0 && pose.world_from_proxy == now.body.world_from_proxy &&
-        pose.center_ws == now.center_ws && pose.radiance_drift == now.radiance_drift)
-      continue;
-    pose = {.version = ++body_version_,
-            .world_from_proxy = now.body.world_from_proxy,
-            .center_ws = now.center_ws,
-            .radiance_drift = now.radiance_drift};
-  }
+  bodies_.clear();
+  for (std::uint32_t b = 0; b < bodies.size(); ++b)
+    bodies_.push_back({.now = bodies[b], .index = b, .sphere = capture_.sphereOf(bodies[b].body)});
+  std::ranges::stable_sort(bodies_, {}, [](const Body& body) { return body.now.key; });
 }
 
-std::vector<bool> IncidentLight::ignoredBy(const IncidentGroup& group, std::size_t bodies) {
-  std::vector<bool> ignored(bodies, false);
-  if (group.body < bodies) ignored[group.body] = true;
-  for (const std::uint32_t body : group.left_out)
-    if (body < bodies) ignored[body] = true;
-  return ignored;
+IncidentLight::LeftOut IncidentLight::leftOutOf(const IncidentGroup& group) const {
+  LeftOut found;
+  for (const Body& body : bodies_) {
+    const bool left_out = std::ranges::binary_search(group.left_out, body.index);
+    found.ignored.push_back(left_out || body.index == group.body);
+    if (left_out) found.keys.push_back(body.now.key);
+  }
+  return found;
 }
 
 void IncidentLight::seeFrom(const glm::vec3& position_ws, const std::vector<bool>& ignored,
@@ -376,21 +330,19 @@ void IncidentLight::seeFrom(const glm::vec3& position_ws, const std::vector<bool
 // body.
 std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& environment,
                                                              std::span<const IncidentGroup> groups,
+                                                             std::span<const LeftOut> left_out,
                                                              std::span<const LocalLight> lights) const {
   std::vector<Wanted> looks;
-  std::vector<std::vector<bool>> ignored;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    ignored.push_back(ignoredBy(groups[g], bodies_.size()));
+  for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) looks.push_back({-1.0f, g, s});
-  }
   constexpr std::size_t kWorthAThread = 256;  // a millisecond with two hundred bodies
   inParallel(looks.size(), kWorthAThread, [&](std::size_t i) {
     Wanted& look = looks[i];
     const IncidentGroup& group = groups[look.group];
     std::vector<std::uint32_t> seen;
-    seeFrom(group.samples_ws[look.sample], ignored[look.group], seen);
+    seeFrom(group.samples_ws[look.sample], left_out[look.group].ignored, seen);
     if (seen.empty()) return;
-    look.change = changeAround(look, environment, group, seen, lights);
+    look.change = changeAround(look, environment, group, left_out[look.group], seen, lights);
   });
   return looks;
 }
@@ -398,7 +350,8 @@ std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& 
 // Estimates how much of the light at the sample changed since it was drawn. Returns infinity if it has to be
 // drawn anew.
 float IncidentLight::changeAround(const Wanted& look, const Environment& environment,
-                                  const IncidentGroup& group, std::span<const std::uint32_t> seen,
+                                  const IncidentGroup& group, const LeftOut& left_out,
+                                  std::span<const std::uint32_t> seen,
                                   std::span<const LocalLight> lights) const {
   const Group& kept = groups_[look.group];
   if (!kept.samples[look.sample].drawn) return kWhollyChanged;
@@ -406,12 +359,13 @@ float IncidentLight::changeAround(const Wanted& look, const Environment& environ
   if (drawn.environment != environment.version() || drawn.lights != kept.lights || drawn.renewal != renewal_)
     return kWhollyChanged;
   // A body that now reaches the group by another carrier would otherwise count twice, or not at all.
-  if (drawn.left_out != group.left_out) {
-    const auto changed = [&](std::uint32_t body) {
-      return std::ranges::binary_search(drawn.left_out, body) !=
-             std::ranges::binary_search(group.left_out, body);
+  if (drawn.left_out != left_out.keys) {
+    const auto changed = [&](std::uint64_t key) {
+      return std::ranges::binary_search(drawn.left_out, key) !=
+             std::ranges::binary_search(left_out.keys, key);
     };
-    if (std::ranges::any_of(drawn.seen, changed, &SeenBody::body) || std::ranges::any_of(seen, changed))
+    if (std::ranges::any_of(drawn.seen, changed, &IncidentBody::key) ||
+        std::ranges::any_of(seen, [&](std::uint32_t body) { return changed(bodies_[body].now.key); }))
       return kWhollyChanged;
   }
   const glm::vec3& position_ws = group.samples_ws[look.sample];
@@ -421,16 +375,13 @@ float IncidentLight::changeAround(const Wanted& look, const Environment& environ
   auto then = drawn.seen.begin();
   auto here = seen.begin();
   while (then != drawn.seen.end() || here != seen.end()) {
-    const bool gone = here == seen.end() || (then != drawn.seen.end() && then->body < *here);
-    const bool come = !gone && (then == drawn.seen.end() || *here < then->body);
-    const std::uint32_t index = come ? *here : then->body;
-    if (index >= bodies_.size()) return kWhollyChanged;
-    const Body& body = bodies_[index];
-    const bool same = !gone && !come && stays && then->pose.version == body.pose.version;
-    if (!same) {
-      const BodyPose& before = come ? body.pose : then->pose;
-      const BodyPose& after = gone ? then->pose : body.pose;
-      const BodyChange change = changeOf(before, drawn.position_ws, after, position_ws, body.radius_m);
+    const IncidentBody* was = then == drawn.seen.end() ? nullptr : &*then;
+    const IncidentBody* is = here == seen.end() ? nullptr : &bodies_[*here].now;
+    const bool gone = is == nullptr || (was != nullptr && was->key < is->key);
+    const bool come = was == nullptr || (is != nullptr && is->key < was->key);
+    if (gone || come || !stays || !samePose(*was, *is)) {
+      const IncidentBody &before = come ? *is : *was, &after = gone ? *was : *is;
+      const BodyChange change = changeOf(before, drawn.position_ws, after, position_ws);
       if (change.angle > 0.0f || gone || come) {
         if (!point) {
           Drawn asked;
@@ -440,7 +391,7 @@ float IncidentLight::changeAround(const Wanted& look, const Environment& environ
         if (passesLight(point->queries, after.center_ws - position_ws, change.half_angle + change.angle))
           return kWhollyChanged;
       }
-      const float part = shareOfLight(change, gone || come, order_) * body.brightness;
+      const float part = shareOfLight(change, gone || come, order_) * after.body.brightness;
       change_squared += part * part;  // as a sum of squares, since some changes brighten and some darken
     }
     if (!come) ++then;

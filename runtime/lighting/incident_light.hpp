@@ -37,12 +37,14 @@ namespace lambent::lighting {
 // This value means that the light must be captured again.
 inline constexpr float kWhollyChanged = std::numeric_limits<float>::infinity();
 
-struct BodyPose {
-  std::uint64_t version = 0;  // unique per pose: equal versions are equal poses
-  glm::mat4 world_from_proxy{1.0f};
-  glm::vec3 center_ws{0.0f};
+// Describes a body, and how its radiance changes.
+struct IncidentBody {
+  CaptureBody body;
+  glm::vec3 center_ws{0.0f};  // of a bounding sphere
+  float radius_m = 0.0f;
   // Sums all relative changes of its radiance so far.
   double radiance_drift = 0.0;
+  std::uint64_t key = 0;  // identifies it when others come and go
 };
 
 // Describes the change of a body's bounding sphere as seen from a place.
@@ -51,9 +53,9 @@ struct BodyChange {
   float drift = 0.0f;                     // relative change of its radiance
 };
 
-// Returns the change between two poses; all but the half angle is zero if both are the same.
-BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const BodyPose& after,
-                    const glm::vec3& place_after, float radius_m);
+// Returns the change of a body between two times; all but the half angle is zero if both are the same.
+BodyChange changeOf(const IncidentBody& before, const glm::vec3& place_before, const IncidentBody& after,
+                    const glm::vec3& place_after);
 
 // Returns the change relative to the light's mean, in `order` bands. `other` tells that the body appeared or
 // disappeared.
@@ -74,24 +76,11 @@ struct DividedLight {
   sh::LightVector rest{1}, key{1};
 };
 
-// Describes a body, and how its radiance changes.
-struct IncidentBody {
-  CaptureBody body;
-  glm::vec3 center_ws{0.0f};  // of a bounding sphere
-  float radius_m = 0.0f;
-  // Sums all relative changes of its radiance so far.
-  double radiance_drift = 0.0;
-  std::uint64_t key = 0;  // identifies it when others come and go
-};
-
 // Describes a rigid group that receives light.
 struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // index of its own body
   std::vector<glm::vec3> samples_ws;
   std::vector<LightCarrier> carriers{};  // per local light
-  // Gives the share of each light that the bodies in left_out let through, indexed by sample, then light.
-  // Empty means 1.
-  std::vector<float> open{};
   // Lists the bodies (rising indices) whose light and shadow reach the group by another carrier. They are not
   // drawn for its samples.
   std::vector<std::uint32_t> left_out{};
@@ -151,22 +140,23 @@ class IncidentLight {
   const IncidentCounts& counts() const { return counts_; }
 
  private:
-  struct SeenBody {
-    std::uint32_t body = 0;
-    BodyPose pose;  // its pose when the sample's surroundings were drawn
-  };
   struct Body {
-    BodyPose pose;
+    IncidentBody now;
+    std::uint32_t index = 0;  // in the scene
     capture::BodySphere sphere;
-    float radius_m = 0.0f, brightness = 1.0f;
+  };
+  // Lists what is not drawn for a group.
+  struct LeftOut {
+    std::vector<bool> ignored;        // indexed as bodies_; its own body too
+    std::vector<std::uint64_t> keys;  // of the bodies in IncidentGroup::left_out, sorted
   };
   // Records from what a sample's surroundings were drawn, and the result.
   struct Drawn {
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;  // versions
     std::uint32_t renewal = 0;                  // value of renewal_
-    std::vector<SeenBody> seen;
-    std::vector<std::uint32_t> left_out;
+    std::vector<IncidentBody> seen;             // as they were then, by their keys
+    std::vector<std::uint64_t> left_out;
     bool fades = false;
     std::vector<std::int32_t> query_of_disc, query_of_light;  // index into result.visible; -1: not asked
     CapturedLight result;
@@ -181,9 +171,8 @@ class IncidentLight {
     DividedLight light;
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
-    std::vector<float> open;
     // The bodies that were left out of the light, and the fade from the light before.
-    std::vector<std::uint32_t> left_out;
+    std::vector<std::uint64_t> left_out;
     bool fade_begins = false;
     std::uint32_t fade_steps = 0;  // steps that remain
     DividedLight fade_from;
@@ -205,15 +194,13 @@ class IncidentLight {
   };
 
   IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
-  static void leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades);
+  static void leaveOut(Sample& sample, const std::vector<std::uint64_t>& left_out, bool fades);
   void takeDrawn(bool wait);
   void followGroups(std::span<const IncidentGroup> groups);
   static void renewSamples(Group& group, const IncidentGroup& now);
-  void followBodies(std::span<const IncidentBody> bodies);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
-                    const glm::vec3& position_ws, std::span<const LocalLight> lights,
-                    std::span<const float> open);
+                    const glm::vec3& position_ws, std::span<const LocalLight> lights);
   static void askForLights(const Environment& environment, const IncidentGroup& group,
                            std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
   // somethingShines() tells whether, since the last call, the sky, a light or a body's radiance changed;
@@ -221,23 +208,22 @@ class IncidentLight {
   bool somethingShines(const Environment& environment, std::span<const IncidentBody> bodies);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
   void noticeBodies(std::span<const IncidentBody> bodies);
-  static std::vector<bool> ignoredBy(const IncidentGroup& group, std::size_t bodies);
-  // Lists the bodies that are drawn for a point there, rising.
+  LeftOut leftOutOf(const IncidentGroup& group) const;
+  // Lists the bodies that are drawn for a point there, as rising indices into bodies_.
   void seeFrom(const glm::vec3& position_ws, const std::vector<bool>& ignored,
                std::vector<std::uint32_t>& seen) const;
   std::vector<Wanted> lookAround(const Environment& environment, std::span<const IncidentGroup> groups,
-                                 std::span<const LocalLight> lights) const;
+                                 std::span<const LeftOut> left_out, std::span<const LocalLight> lights) const;
   float changeAround(const Wanted& look, const Environment& environment, const IncidentGroup& group,
-                     std::span<const std::uint32_t> seen, std::span<const LocalLight> lights) const;
+                     const LeftOut& left_out, std::span<const std::uint32_t> seen,
+                     std::span<const LocalLight> lights) const;
 
   Capture capture_;
   int order_;
   KeyedState<Group> groups_;
-  std::vector<std::uint64_t> body_keys_;  // give meaning to all kept indices of bodies
-  KeyedState<Body> bodies_;               // as they were at the last search for changes
-  std::uint64_t body_version_ = 0;        // the last version given to a pose
-  std::vector<Request> requests_;         // captures on their way
-  std::uint64_t version_ = 0;             // the last version given to a sample
+  std::vector<Body> bodies_;       // as they were at the last search for changes, by their keys
+  std::vector<Request> requests_;  // captures on their way
+  std::uint64_t version_ = 0;      // the last version given to a sample
   std::uint32_t renewal_ = 0;
   std::vector<LocalLight> lights_before_;
   // Poses of bodies, places of samples and what is left out; and what somethingShines() lists.

@@ -18,7 +18,6 @@
 
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/distant_lights.hpp"
-#include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::lighting {
 

@@ -22,7 +22,8 @@ double transferPower(int l) {
 }
 
 // Holds the normalised associated Legendre functions at the centres of the rows, times sqrt(4pi) so that band
-// 0 is 1, and with the sqrt(2) of m > 0; and the cosine and sine of m times the azimuth.
+// 0 is 1, and with the sqrt(2) of m > 0 (their sign does not matter here); and the cosine and sine of m times
+// the azimuth.
 struct Tables {
   static constexpr int kBands = FluxGrid::kBands;
   static constexpr std::size_t kRows = FluxGrid::kRows, kColumns = FluxGrid::kColumns;
@@ -30,27 +31,11 @@ struct Tables {
   std::array<std::array<double, kColumns>, kBands> cosines{}, sines{};           // [m][column]
 
   Tables() {
-    for (std::size_t row = 0; row < kRows; ++row) {
-      const double polar = kPi * (static_cast<double>(row) + 0.5) / kRows;
-      const double z = std::cos(polar), side = std::sin(polar);
-      double sectoral = 1.0;
-      for (int m = 0; m < kBands; ++m) {
-        if (m > 0) sectoral *= side * std::sqrt((2.0 * m + 1.0) / (2.0 * m) * (m == 1 ? 2.0 : 1.0));
-        double before = 0.0, value = sectoral, back = 0.0;
-        for (int l = m; l < kBands; ++l) {
-          if (l > m) {
-            const double factor = std::sqrt((4.0 * l * l - 1.0) / (1.0 * l * l - 1.0 * m * m));
-            const double next = factor * (z * value - back * before);
-            before = value;
-            value = next;
-          }
-          // The next step uses this factor, sqrt((l² - m²) / (4 l² - 1)).
-          back = std::sqrt((1.0 * l * l - 1.0 * m * m) / (4.0 * l * l - 1.0));
-          if (l == m) back = 0.0;
-          legendre[static_cast<std::size_t>(m)][static_cast<std::size_t>(l)][row] = value;
-        }
-      }
-    }
+    for (unsigned m = 0; m < kBands; ++m)
+      for (unsigned l = m; l < kBands; ++l)
+        for (std::size_t row = 0; row < kRows; ++row)
+          legendre[m][l][row] = std::sqrt((m > 0 ? 8.0 : 4.0) * kPi) *
+                                std::sph_legendre(l, m, kPi * (static_cast<double>(row) + 0.5) / kRows);
     for (std::size_t m = 0; m < cosines.size(); ++m)
       for (std::size_t x = 0; x < kColumns; ++x) {
         const double angle = 2 * kPi * static_cast<double>(m * x % kColumns) / kColumns;

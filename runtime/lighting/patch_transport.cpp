@@ -88,7 +88,7 @@ Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
   }
   for (std::size_t t = 0; t < tree_.size(); ++t) {
     const std::uint32_t parts = partsFor(weighed[t], wanted);
-    split_.push_back({.first = patches_.size(), .parts = parts});
+    levels_.push_back({{.parts = parts, .first = patches_.size()}});
     const auto& [a, b, c] = tree_[t].corners;
     const auto cornerAt = [&](std::uint32_t column, std::uint32_t row) {
       const glm::vec2 at = glm::vec2(column, row) / static_cast<float>(parts);
@@ -110,11 +110,7 @@ Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
   }
   for (Patch& patch : patches_)
     for (std::size_t k = 0; k < kPatchPoints; ++k) patch.origins[k] = inFront(patch.points[k], patch.normal);
-}
-
-std::size_t Patches::patchAt(const RayHit& hit) const {
-  const Split& split = split_[hit.triangle];
-  return split.first + TrianglePart::at(split.parts, hit.b, hit.c).place(split.parts);
+  findRegions();
 }
 
 float Patches::beside(std::size_t triangle, const glm::vec3& point) const {
@@ -158,17 +154,14 @@ glm::vec3 Patches::inFront(glm::vec3 point, const glm::vec3& normal) const {
   return point;
 }
 
-PatchRegions::PatchRegions(const Patches& patches) : patch_count_(patches.size()) {
-  for (std::size_t t = 0; t < patches.tree().size(); ++t) {
-    const std::uint32_t parts = patches.partsOf(t);
-    corners_.push_back(patches.tree()[t].corners);
-    std::vector<Level>& levels = levels_.emplace_back();
-    levels.push_back({.parts = parts, .first = patches.firstOf(t)});
+void Patches::findRegions() {
+  for (std::vector<Level>& levels : levels_) {
+    const auto [parts, first_patch] = levels[0];
     for (std::uint32_t coarse = parts; coarse > 1;) {
       coarse = (coarse + 1) / 2;
-      levels.push_back({.parts = coarse, .first = size()});
+      levels.push_back({.parts = coarse, .first = regionCount()});
       members_.resize(members_.size() + std::size_t{coarse} * coarse);
-      const std::size_t first = levels.back().first - patch_count_;
+      const std::size_t first = levels.back().first - patches_.size();
       for (std::uint32_t row = 0; row < parts; ++row)
         for (std::uint32_t column = 0; column < parts - row; ++column)
           for (const bool upper : {false, true}) {
@@ -176,7 +169,7 @@ PatchRegions::PatchRegions(const Patches& patches) : patch_count_(patches.size()
             const float third = upper ? 2.0f / 3.0f : 1.0f / 3.0f;
             const glm::vec2 middle = (glm::vec2(column, row) + third) / static_cast<float>(parts);
             const std::size_t patch =
-                patches.firstOf(t) + TrianglePart{.column = column, .row = row, .upper = upper}.place(parts);
+                first_patch + TrianglePart{.column = column, .row = row, .upper = upper}.place(parts);
             members_[first + TrianglePart::at(coarse, middle.x, middle.y).place(coarse)].push_back(
                 static_cast<std::uint32_t>(patch));
           }
@@ -184,20 +177,20 @@ PatchRegions::PatchRegions(const Patches& patches) : patch_count_(patches.size()
   }
 }
 
-std::size_t PatchRegions::regionAt(const RayHit& hit, std::size_t level) const {
+std::size_t Patches::regionAt(const RayHit& hit, std::size_t level) const {
   const Level& of = levels_[hit.triangle][level];
   return of.first + TrianglePart::at(of.parts, hit.b, hit.c).place(of.parts);
 }
 
-float PatchRegions::areaOf(std::size_t triangle, std::size_t level) const {
-  const auto& [a, b, c] = corners_[triangle];
+float Patches::areaOf(std::size_t triangle, std::size_t level) const {
+  const auto& [a, b, c] = tree_[triangle].corners;
   const auto parts = static_cast<float>(levels_[triangle][level].parts);
   return 0.5f * glm::length(glm::cross(b - a, c - a)) / (parts * parts);
 }
 
-std::array<glm::vec3, 3> PatchRegions::cornersAt(const RayHit& hit, std::size_t level) const {
+std::array<glm::vec3, 3> Patches::cornersAt(const RayHit& hit, std::size_t level) const {
   constexpr float kDrawnIn = 0.1f;
-  const auto& [a, b, c] = corners_[hit.triangle];
+  const auto& [a, b, c] = tree_[hit.triangle].corners;
   const std::uint32_t parts = levels_[hit.triangle][level].parts;
   const TrianglePart part = TrianglePart::at(parts, hit.b, hit.c);
   const glm::vec2 low(part.column, part.row);
@@ -212,7 +205,7 @@ std::array<glm::vec3, 3> PatchRegions::cornersAt(const RayHit& hit, std::size_t 
   return corners;
 }
 
-std::vector<glm::vec3> PatchRegions::means(std::span<const glm::vec3> by_patch) const {
+std::vector<glm::vec3> Patches::means(std::span<const glm::vec3> by_patch) const {
   std::vector<glm::vec3> all(by_patch.begin(), by_patch.end());
   for (const std::vector<std::uint32_t>& members : members_) {
     glm::vec3 sum(0.0f);
@@ -285,7 +278,7 @@ LinkFrame linkFrame(const glm::vec3& n) {
 }
 
 PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most, int order)
-    : patches_(bundle::patchSurfaceOf(proxy), most), regions_(patches_), order_(order) {
+    : patches_(bundle::patchSurfaceOf(proxy), most), order_(order) {
   findShares();
   findNearest(proxy);
   bounced_ = meanBounced();
@@ -316,7 +309,7 @@ void PatchTransport::findShares() {
           const glm::vec3 direction = frame.turned(cosineDirection(u, turn));
           const auto hit = patches_.tree().first(patch.origins[p], direction);
           if (!hit) continue;
-          if (!hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
+          if (!hit->back) met.push_back(static_cast<std::uint32_t>(patches_.regionAt(*hit, 0)));
           sh::evaluate(order_, direction, basis);
           for (std::size_t c = 0; c < terms; ++c) transfer[c] -= kOne * basis[c];
         }
@@ -429,17 +422,17 @@ std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hi
   const float cosine = std::abs(glm::dot(way, across)) / (glm::length(way) * glm::length(across));
   const float covered = solid_angle_sr * glm::dot(way, way) / std::max(cosine, kLeastCosine);
   std::size_t level = 0;
-  while (level + 1 < regions_.levelsOf(hit.triangle) &&
-         regions_.areaOf(hit.triangle, level + 1) < 4.0f * covered)
+  while (level + 1 < patches_.levelsOf(hit.triangle) &&
+         patches_.areaOf(hit.triangle, level + 1) < 4.0f * covered)
     ++level;
   // If something stands in front of a part of the region, light would leak.
   const auto inSight = [&] {
-    return std::ranges::none_of(regions_.cornersAt(hit, level), [&](const glm::vec3& corner) {
+    return std::ranges::none_of(patches_.cornersAt(hit, level), [&](const glm::vec3& corner) {
       return patches_.tree().blocked(origin, corner - origin, kAlmost);
     });
   };
   while (level > 0 && !inSight()) --level;
-  return regions_.regionAt(hit, level);
+  return patches_.regionAt(hit, level);
 }
 
 std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points,
@@ -454,7 +447,7 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
       for (std::size_t k = 0; k < kLinks; ++k) {
         const std::optional<RayHit> hit = patches_.tree().first(origin, frame.turned(directions[k]));
         backs += hit && hit->back ? 1 : 0;
-        std::size_t region = regions_.size();
+        std::size_t region = patches_.regionCount();
         if (hit && !hit->back) {
           const float solid_angle = spread == LinkSpread::Cosine ? std::numbers::pi_v<float> / directions[k].z
                                                                  : 2.0f * std::numbers::pi_v<float>;

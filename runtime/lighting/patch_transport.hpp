@@ -22,7 +22,10 @@ namespace lambent::lighting {
 
 // Owns the surfaces of a rigid group as patches that exchange light: the triangles of its patch surface
 // (runtime/bundle/capture_proxy.hpp), split into smaller ones, most of them where they matter to pictures. A
-// patch sends one radiance in all directions. All positions are in the group's frame. No GL.
+// patch sends one radiance in all directions. Regions are patches, and coarser parts of the same triangles
+// that contain several, like the levels of a mip map. A ray that stands for a solid angle looks up the mean
+// over what it covers; otherwise a few rays or none would hit a small bright spot. Regions are numbered:
+// first the patches, in their order. All positions are in the group's frame. No GL.
 
 inline constexpr std::size_t kMaxPatches = 4096;
 inline constexpr std::size_t kPatchPoints = 4;
@@ -57,14 +60,12 @@ class Patches {
   std::size_t size() const { return patches_.size(); }
   // Returns the triangles that were split, in their order.
   const TriangleTree& tree() const { return tree_; }
-  std::size_t patchAt(const RayHit& hit) const;
   // Return the range of a triangle's patches, which are contiguous.
-  std::size_t firstOf(std::size_t triangle) const { return split_[triangle].first; }
+  std::size_t firstOf(std::size_t triangle) const { return levels_[triangle][0].first; }
   std::size_t countOf(std::size_t triangle) const {
-    return std::size_t{partsOf(triangle)} * partsOf(triangle);
+    const std::uint32_t parts = levels_[triangle][0].parts;
+    return std::size_t{parts} * parts;
   }
-  // Returns into how many parts each edge is cut.
-  std::uint32_t partsOf(std::size_t triangle) const { return split_[triangle].parts; }
   // Returns the diagonal of the bounds, or of the part that matters to pictures.
   float extent() const { return extent_; }
   // Returns how far the patches may be from the surface that they represent.
@@ -74,52 +75,33 @@ class Patches {
   // the surface.
   glm::vec3 inFront(glm::vec3 point, const glm::vec3& normal) const;
 
- private:
-  // Each edge of a triangle is cut into `parts`, so that it has parts² patches from `first` on.
-  struct Split {
-    std::size_t first = 0;
-    std::uint32_t parts = 1;
-  };
-  // Returns how far beyond an edge of the triangle the point lies, seen along the triangle's normal; 0 over
-  // it.
-  float beside(std::size_t triangle, const glm::vec3& point) const;
-
-  std::vector<Patch> patches_;
-  std::vector<Split> split_;        // one per triangle
-  std::vector<glm::vec3> normals_;  // of the triangles
-  TriangleTree tree_;
-  float extent_ = 0.0f, error_ = 0.0f;
-};
-
-// Owns the regions of a rigid group: its patches, and coarser parts of the same triangles that contain
-// several patches, like the levels of a mip map. A ray that stands for a solid angle looks up the mean over
-// what it covers; otherwise a few rays or none would hit a small bright spot. Regions are numbered: first the
-// patches, in their order. All positions are in the group's frame. No GL.
-class PatchRegions {
- public:
-  PatchRegions() = default;
-  explicit PatchRegions(const Patches& patches);
-
-  std::size_t size() const { return patch_count_ + members_.size(); }
-  // Returns how many levels the triangle has. Level 0 holds its patches.
+  std::size_t regionCount() const { return patches_.size() + members_.size(); }
+  // Returns how many levels of regions the triangle has. Level 0 holds its patches.
   std::size_t levelsOf(std::size_t triangle) const { return levels_[triangle].size(); }
   std::size_t regionAt(const RayHit& hit, std::size_t level) const;
   float areaOf(std::size_t triangle, std::size_t level) const;
   // Returns the corners of that region, drawn in a little so that rays to them do not graze its neighbours.
   std::array<glm::vec3, 3> cornersAt(const RayHit& hit, std::size_t level) const;
-
   // Returns a value for each region: the mean of the values of its patches.
   std::vector<glm::vec3> means(std::span<const glm::vec3> by_patch) const;
 
  private:
+  // Each edge of a triangle is cut into `parts`, so that the level has parts² regions from `first` on.
   struct Level {
-    std::uint32_t parts = 1;  // how many parts an edge has
-    std::size_t first = 0;    // the number of the first region
+    std::uint32_t parts = 1;
+    std::size_t first = 0;
   };
+  void findRegions();
+  // Returns how far beyond an edge of the triangle the point lies, seen along the triangle's normal; 0 over
+  // it.
+  float beside(std::size_t triangle, const glm::vec3& point) const;
+
+  std::vector<Patch> patches_;
   std::vector<std::vector<Level>> levels_;           // indexed by triangle
-  std::vector<std::array<glm::vec3, 3>> corners_;    // indexed by triangle
   std::vector<std::vector<std::uint32_t>> members_;  // the patches of each coarser region
-  std::size_t patch_count_ = 0;
+  std::vector<glm::vec3> normals_;                   // of the triangles
+  TriangleTree tree_;
+  float extent_ = 0.0f, error_ = 0.0f;
 };
 
 inline constexpr std::size_t kLinks = 64;  // links per point
@@ -155,7 +137,6 @@ class PatchTransport {
   explicit PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most = kMaxPatches, int order = 5);
 
   const Patches& patches() const { return patches_; }
-  const PatchRegions& regions() const { return regions_; }
   int order() const { return order_; }
 
   // Returns the exit radiance of each patch when `direct` (E/pi, possibly below 0) falls on it: direct light
@@ -172,9 +153,9 @@ class PatchTransport {
   float bounced() const { return bounced_; }
 
   // Returns kLinks regions for each point. Each region is about as large as its ray stands for and is wholly
-  // visible; a ray that hits nothing, or the back of something, gives regions().size(). A point behind the
-  // proxy, which sees mostly backs, takes the view of the nearest patch that faces the same way. Uses several
-  // threads.
+  // visible; a ray that hits nothing, or the back of something, gives patches().regionCount(). A point behind
+  // the proxy, which sees mostly backs, takes the view of the nearest patch that faces the same way. Uses
+  // several threads.
   std::vector<std::uint16_t> link(std::span<const SurfacePoint> points, LinkSpread spread) const;
 
   // Returns the mean exit radiance of each triangle of all levels of the proxy, given that of the patches.
@@ -195,7 +176,6 @@ class PatchTransport {
   void findNearest(const bundle::CaptureProxy& proxy);
 
   Patches patches_;
-  PatchRegions regions_;
   int order_ = 5;
   float bounced_ = 0.0f;
   std::vector<float> transfer_;             // order² per patch

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <future>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,28 +58,44 @@ std::vector<std::uint64_t> faceTexels(std::span<const spec::EnvironmentMap* cons
   return texels;
 }
 
-}  // namespace
-
-std::uint32_t cubeSizeFor(std::span<const spec::EnvironmentMap* const> environment_maps,
-                          std::uint32_t largest) {
+// Returns a size with about one texel of a cube map per texel of the environment maps; a constant needs only
+// one. The size is a power of two because mip levels are read, and halving an odd size drops a row of texels,
+// in which a lamp may stand.
+std::uint32_t cubeSizeFor(std::span<const spec::EnvironmentMap* const> environment_maps) {
   std::uint32_t size = 1;
   for (const spec::EnvironmentMap* environment_map : environment_maps) {
     const std::uint32_t width = environment_map->image.width;
     const std::uint32_t wanted =
         environment_map->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
-    size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, largest)));
+    size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, kLargestSkyCube)));
   }
   return size;
 }
 
-gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant) {
-  const std::uint32_t size = cubeSizeFor(environment_maps, kLargestSkyCube);
-  gpu::Texture cube("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
-  fillCube(cube, GL_HALF_FLOAT, [&](int face) { return faceTexels(environment_maps, constant, face, size); });
+// Resamples environment maps and a constant, in their own frame, with about one texel of the cube per texel
+// of the environment maps and a thread for each face.
+gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant,
+                     bool mip_levels = false) {
+  const std::uint32_t size = cubeSizeFor(environment_maps);
+  gpu::Texture cube("sky", {.format = GL_RGBA16F,
+                            .width = size,
+                            .height = size,
+                            .levels = mip_levels ? static_cast<std::uint32_t>(std::bit_width(size)) : 1u,
+                            .cube = true});
+  std::vector<std::future<std::vector<std::uint64_t>>> faces;
+  for (int face = 0; face < 6; ++face)
+    faces.push_back(
+        std::async(std::launch::async, [=] { return faceTexels(environment_maps, constant, face, size); }));
+  for (int face = 0; face < 6; ++face)
+    glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
+                        GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
+  if (mip_levels) glGenerateTextureMipmap(cube.id());
   glTextureParameteri(cube.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(cube.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   return cube;
 }
+
+}  // namespace
 
 Result<Sky> Sky::create(const Environment& environment) {
   Sky sky;
@@ -359,41 +376,6 @@ using namespace capture;
 constexpr GLint kSkyFromWorld = 0, kSkySize = 1, kSkySubsamples = 2, kLevels = 3, kConstant = 4,
                 kSkyShares = 5;
 constexpr GLint kSkyTexelCount = 0;  // as in capture_sky_light.comp
-constexpr std::uint32_t kLargestProbeCube = 512;
-
-// Each texel is the mean over 2 x 2 places in it.
-std::vector<glm::vec4> meanFaceTexels(const std::vector<const spec::EnvironmentMap*>& environment_maps,
-                                      int face, std::uint32_t size) {
-  constexpr double kPlaces[] = {0.25, 0.75};
-  std::vector<glm::vec4> texels;
-  texels.reserve(std::size_t{size} * size);
-  for (std::uint32_t y = 0; y < size; ++y)
-    for (std::uint32_t x = 0; x < size; ++x) {
-      glm::vec3 sum(0.0f);
-      for (const double v : kPlaces)
-        for (const double u : kPlaces) {
-          const glm::vec3 dir(
-              glm::normalize(sh::cubeFaceDirection(face, 2 * (x + u) / size - 1, 2 * (y + v) / size - 1)));
-          for (const spec::EnvironmentMap* environment_map : environment_maps)
-            sum += 0.25f * spec::radiance(*environment_map, dir);
-        }
-      texels.emplace_back(sum, 0.0f);
-    }
-  return texels;
-}
-
-// Makes the cube in the lights' own frame, with mip maps.
-gpu::Texture probeCube(const std::vector<const spec::EnvironmentMap*>& environment_maps) {
-  const std::uint32_t size = cubeSizeFor(environment_maps, kLargestProbeCube);
-  gpu::Texture cube("capture environment maps", {.format = GL_RGBA32F,
-                                                 .width = size,
-                                                 .height = size,
-                                                 .levels = static_cast<std::uint32_t>(std::bit_width(size)),
-                                                 .cube = true});
-  fillCube(cube, GL_FLOAT, [&](int face) { return meanFaceTexels(environment_maps, face, size); });
-  glGenerateTextureMipmap(cube.id());
-  return cube;
-}
 
 }  // namespace
 
@@ -415,7 +397,6 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
   const std::size_t texels = std::size_t{6} * options.size * options.size,
                     coefficients = static_cast<std::size_t>(sh::coefficientCount(options.order));
   sky.texels_ = gpu::Buffer("capture sky", texels * sizeof(glm::vec4));
-  sky.weights_ = gpu::Buffer("capture sky weights", texels * ((coefficients + 3) / 4) * sizeof(glm::vec4));
   sky.light_ = gpu::Buffer("capture sky light", coefficients * sizeof(glm::vec4));
   return sky;
 }
@@ -424,22 +405,15 @@ void CaptureSky::takeLights(const Environment& environment) {
   if (lights_ == environment.restVersion()) return;
   lights_ = environment.restVersion();
   for (std::size_t i = 0; i < Environment::kSets; ++i)
-    environment_maps_[i] = probeCube(environment.restOf(i).environment_maps);
+    environment_maps_[i] =
+        skyCube(environment.restOf(i).environment_maps, glm::vec3(0.0f), /*mip_levels=*/true);
 }
 
 bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {
   if (version_ == environment.version()) return false;
-  makeTurned(environment, environment.worldFromLight(), weights);
   version_ = environment.version();
-  counters.dispatches += 2;
-  return true;
-}
-
-void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& world_from_light,
-                            const gpu::Buffer& weights) {
   takeLights(environment);
-  version_ = 0;
-  const glm::mat3 light_from_world = glm::transpose(world_from_light);
+  const glm::mat3 light_from_world = glm::transpose(environment.worldFromLight());
   // Two subsamples span a texel: with one, the triangles of the linear filter would not add up evenly over a
   // turned environment map, and a sun of one texel would flicker by several per cent.
   const auto levelOf = [&](const gpu::Texture& environment_maps) {
@@ -465,23 +439,23 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
   }
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   texels_.bindStorage(kBindSky);
-  weights.bindStorage(kBindWeights);
-  weights_.bindStorage(kBindSkyWeights);
   const std::uint32_t texel_count = 6 * options_.size * options_.size;
   glDispatchCompute((texel_count + kWorkGroupSize - 1) / kWorkGroupSize, 1, 1);
   for (GLuint i = 0; i < Environment::kSets; ++i) glBindSampler(i, 0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   light_program_.use();
   glUniform1ui(kSkyTexelCount, texel_count);
-  bindTables();
+  bindTables(weights);
   light_.bindStorage(kBindSkyLight);
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  counters.dispatches += 2;
+  return true;
 }
 
-void CaptureSky::bindTables() {
+void CaptureSky::bindTables(const gpu::Buffer& weights) {
   bindTable(texels_view_, kUnitSky, GL_RGBA32F, texels_);
-  bindTable(weights_view_, kUnitSkyWeights, GL_RGBA32F, weights_);
+  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights);
 }
 
 }  // namespace lambent::lighting

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <future>
 #include <span>
 #include <vector>
 
@@ -27,28 +26,6 @@ namespace lambent::lighting {
 
 // The tables of GLSL text that programs of this room include files from.
 extern const gpu::FindText kLightingShaders[1];
-
-// Returns a size with about one texel of a cube map per texel of the environment maps; a constant needs only
-// one. The size is a power of two because mip levels are read, and halving an odd size drops a row of texels,
-// in which a lamp may stand.
-std::uint32_t cubeSizeFor(std::span<const spec::EnvironmentMap* const> environment_maps,
-                          std::uint32_t largest);
-
-// Fills the first level of a cube map from texelsOf(face), with a thread for each face.
-template <typename TexelsOf>
-void fillCube(const gpu::Texture& cube, GLenum type, const TexelsOf& texelsOf) {
-  const auto size = static_cast<GLsizei>(cube.desc().width);
-  std::vector<std::future<decltype(texelsOf(0))>> faces;
-  for (int face = 0; face < 6; ++face)
-    faces.push_back(std::async(std::launch::async, [&texelsOf, face] { return texelsOf(face); }));
-  for (int face = 0; face < 6; ++face)
-    glTextureSubImage3D(cube.id(), 0, 0, 0, face, size, size, 1, GL_RGBA, type,
-                        faces[static_cast<std::size_t>(face)].get().data());
-}
-
-// Resamples environment maps and a constant, in their own frame, with about one texel of the cube per texel
-// of the environment maps.
-gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant);
 
 class Sky {
  public:

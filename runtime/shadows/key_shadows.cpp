@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -12,8 +11,6 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <glm/vector_relational.hpp>
-
-#include "runtime/shadows/shadow_casters.hpp"
 
 namespace lambent::frame {
 
@@ -117,7 +114,6 @@ std::optional<KeyRegion> regionOf(std::span<const glm::dvec3> seen, glm::dvec3 t
 
 namespace {
 
-constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
 constexpr std::uint32_t kLeastRays = 8;
 constexpr std::uint64_t kFinestTiles = 2;  // limit on the texels of all maps, in areas of the finest
@@ -171,13 +167,11 @@ glm::mat4 clipFromWorld(const KeyRegion& region) {
 
 }  // namespace
 
-KeyShadows::KeyShadows() : SurfaceModule(kKeyFunctions), views_("key map views"), block_("key lights") {}
+KeyShadows::KeyShadows() : SurfaceModule(kKeyFunctions), block_("key lights") {}
 
 Result<void> KeyShadows::compile() {
   if (pyramid_program_) return {};
-  auto casters = ShadowCasters::compile("key caster", "key_caster.vert", "key_caster.frag");
-  if (!casters) return failAgain(casters.error());
-  programs_ = std::move(*casters);
+  if (Result<void> done = casters_.compile(); !done) return done;
   Result<gpu::Program> pyramid =
       gpu::Program::create("key blockers", {{GL_COMPUTE_SHADER, "key_blockers.comp"}}, kShadowShaders);
   if (!pyramid) return failAgain(pyramid.error());
@@ -223,7 +217,8 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
     x += map.size;
   }
   const std::uint32_t height = y + row_height;
-  const bool same_texture = depths_ && depths_.desc().width == width && depths_.desc().height == height;
+  const gpu::Texture& depths = casters_.depths();
+  const bool same_texture = depths && depths.desc().width == width && depths.desc().height == height;
   for (std::size_t k = 0; k < maps.size() && same_texture; ++k)
     if (k < maps_.size() && maps_[k].x == maps[k].x && maps_[k].y == maps[k].y &&
         maps_[k].size == maps[k].size) {
@@ -234,17 +229,12 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
     }
   maps_ = std::move(maps);
   if (same_texture || maps_.empty()) return;
-  depths_ = gpu::Texture("key shadows", {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+  casters_.resize(width, height);
   const std::uint32_t levels = std::bit_width(width / kBlockerTexels);
   blockers_ = gpu::Texture("key blockers", {.format = GL_RG32F,
                                             .width = width / kBlockerTexels,
                                             .height = height / kBlockerTexels,
                                             .levels = levels});
-  GLuint id = 0;
-  glCreateFramebuffers(1, &id);
-  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
-  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, depths_.id(), 0);
-  glNamedFramebufferDrawBuffer(id, GL_NONE);
 }
 
 std::vector<std::size_t> KeyShadows::findChanged(World& world, const spec::View& view) {
@@ -320,26 +310,21 @@ Result<void> KeyShadows::update(World& world, std::span<const spec::Disc> keys, 
 
 void KeyShadows::drawMaps(World& world, const std::vector<std::size_t>& changed, gpu::Counters& counters) {
   std::vector<ShadowCasters::Tile> tiles;
-  std::vector<std::byte> views(kViewStride * changed.size());
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    const Map& map = maps_[changed[i]];
-    ShadowCasters::Tile& tile = tiles.emplace_back(ShadowCasters::Tile{
-        .x = map.x, .y = map.y, .size = map.size, .view = kViewStride * i, .casters = {}});
+  for (const std::size_t k : changed) {
+    const Map& map = maps_[k];
+    ShadowCasters::Tile& tile =
+        tiles.emplace_back(ShadowCasters::Tile{.x = map.x, .y = map.y, .size = map.size, .casters = {}});
     for (const ShadowCaster& caster : map.casters) tile.casters.push_back(&caster);
-    const KeyMapView block{clipFromWorld(map.region)};
-    std::memcpy(views.data() + tile.view, &block, sizeof(block));
+    tile.setView(KeyMapView{clipFromWorld(map.region)});
   }
-  views_.assign(std::span<const std::byte>(views));
-  counters.uploaded_bytes += views.size();
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glEnable(GL_DEPTH_CLAMP);  // casters may reach below the map's bottom, where they shadow nothing visible
-  casters_.draw(world, tiles, programs_, {views_.buffer(), sizeof(KeyMapView), kBindKeyMap}, counters);
+  casters_.draw(world, tiles, kBindKeyMap, counters);
   glDisable(GL_DEPTH_CLAMP);
 }
 
 void KeyShadows::makePyramid(const std::vector<std::size_t>& changed, gpu::Counters& counters) {
   pyramid_program_.use();
-  depths_.bind(0);
+  casters_.depths().bind(0);
   blockers_.bind(1);
   glBindSampler(0, 0);
   glBindSampler(1, 0);
@@ -406,15 +391,16 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) const {
                 .pad2 = 0};
   block_.assign(std::span<const Block>(&block, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindKeyLights, block_.buffer().id());
-  depths_.bind(kUnitKeyShadows);
+  casters_.depths().bind(kUnitKeyShadows);
   blockers_.bind(kUnitKeyBlockers);
   glBindSampler(kUnitKeyShadows, 0);
   glBindSampler(kUnitKeyBlockers, 0);
 }
 
 std::uint64_t KeyShadows::bytesResident() const {
-  if (!depths_) return 0;
-  const std::uint64_t texels = std::uint64_t{depths_.desc().width} * depths_.desc().height;
+  const gpu::Texture& depths = casters_.depths();
+  if (!depths) return 0;
+  const std::uint64_t texels = std::uint64_t{depths.desc().width} * depths.desc().height;
   return 4 * texels + 8 * texels / (kBlockerTexels * kBlockerTexels) * 4 / 3;
 }
 

@@ -77,19 +77,19 @@ class KeyShadows final : public SurfaceModule {
   std::uint64_t version() const override { return any() ? 1 : 0; }
   std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
   std::uint64_t bytesResident() const;
-  void forget() {
-    for (Map& map : maps_) map.drawn = false;
-  }
-
- private:
   struct Map {
-    spec::Disc light;
+    spec::Disc light;                      // in world axes
     std::uint32_t x = 0, y = 0, size = 0;  // its tile, in texels
     KeyRegion region;
     std::vector<ShadowCaster> casters;
     bool drawn = false;
   };
+  const std::vector<Map>& maps() const { return maps_; }
+  void forget() {
+    for (Map& map : maps_) map.drawn = false;
+  }
 
+ private:
   void layOut(std::span<const spec::Disc> keys);
   Result<void> compile();
   std::vector<std::size_t> findChanged(World& world, const spec::View& view);
@@ -98,13 +98,10 @@ class KeyShadows final : public SurfaceModule {
 
   KeyShadowOptions options_;
   std::vector<Map> maps_;
-  ShadowCasters casters_{"key casters"};
+  ShadowCasters casters_{"key shadows", "key_caster.vert", "key_caster.frag"};
   scene::Box bounds_ws_;  // of all casters
-  ShadowCasters::Programs programs_;
   gpu::Program pyramid_program_;
-  gpu::Texture depths_, blockers_;
-  gpu::Handle<gpu::FramebufferTraits> target_;
-  gpu::Table views_;
+  gpu::Texture blockers_;
   mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
   std::uint32_t maps_drawn_ = 0;
 };

@@ -8,7 +8,6 @@
 
 #include <glm/matrix.hpp>
 
-#include "runtime/shadows/shadow_casters.hpp"
 #include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
@@ -17,7 +16,6 @@ namespace {
 
 using lighting::LocalLight;
 constexpr std::uint32_t kFaces = 6, kFullCubes = 4;
-constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr float kLocalPlane_m = 2e-3f;
 constexpr float kLightSurface = 1.01f;  // the body of a spherical lamp may be larger by this factor
 static_assert(kShadowedLights == lighting::kMaxShadowedLights);
@@ -64,8 +62,7 @@ LocalShadows::LocalShadows(const LocalOptions& options)
       options_{.size = std::clamp(options.size, 16u, 4096u),
                .samples = std::clamp(options.samples, 1u, 256u)},
       block_("local lights"),
-      draws_table_("near draws"),
-      faces_("shadow faces") {}
+      draws_table_("near draws") {}
 
 void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group,
                                gpu::Counters& counters) {
@@ -150,11 +147,7 @@ Result<void> LocalShadows::update(World& world, std::span<const LocalLight> ligh
   own_lamps_.resize(lights_.size());
   updateMasks(world, mask_of_group, counters);
   if (!any_) return {};
-  if (!programs_[0]) {
-    auto made = ShadowCasters::compile("shadow caster", "local_caster.vert", "local_caster.frag");
-    if (!made) return failAgain(made.error());
-    programs_ = std::move(*made);
-  }
+  if (Result<void> done = casters_.compile(); !done) return done;
   makeRoom(static_cast<std::uint32_t>(std::bit_width(lights_used_)));
   const std::vector<std::uint32_t> changed = findChanged(world);
   if (!changed.empty()) drawCubes(world, changed, counters);
@@ -169,42 +162,27 @@ void LocalShadows::makeRoom(std::uint32_t rows) {
               ? options_.size
               : static_cast<std::uint32_t>(static_cast<float>(options_.size) *
                                            std::sqrt(float{kFullCubes} / static_cast<float>(rows)));
-  shadows_ = gpu::Texture("near shadows",
-                          {.format = GL_DEPTH_COMPONENT32F, .width = kFaces * size_, .height = rows * size_});
-  GLuint id = 0;
-  glCreateFramebuffers(1, &id);
-  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
-  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, shadows_.id(), 0);
-  glNamedFramebufferDrawBuffer(id, GL_NONE);
+  casters_.resize(kFaces * size_, rows * size_);
   for (Cube& cube : cubes_) cube.drawn = false;  // the new texture is empty
 }
 
 void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& changed,
                              gpu::Counters& counters) {
   std::vector<ShadowCasters::Tile> tiles;
-  std::vector<std::byte> faces(kFaces * kShadowedLights * kFaceStride);
   for (const std::uint32_t k : changed) {
     Cube& cube = cubes_[k];
     for (std::uint32_t face = 0; face < kFaces; ++face) {
-      ShadowCasters::Tile& tile =
-          tiles.emplace_back(ShadowCasters::Tile{.x = face * size_,
-                                                 .y = k * size_,
-                                                 .size = size_,
-                                                 .view = (kFaces * k + face) * kFaceStride,
-                                                 .casters = {}});
+      ShadowCasters::Tile& tile = tiles.emplace_back(
+          ShadowCasters::Tile{.x = face * size_, .y = k * size_, .size = size_, .casters = {}});
       for (const ShadowCaster& caster : cube.casters)
         if (faceMeets(faceAxes(face), around(caster.bounds_ws, cube.light.position_ws)))
           tile.casters.push_back(&caster);
-      const ShadowFace block = faceOf(cube.light, cube.reach, face);
-      std::memcpy(faces.data() + tile.view, &block, sizeof(block));
+      tile.setView(faceOf(cube.light, cube.reach, face));
     }
     cube.drawn = true;
     ++cubes_drawn_;
   }
-  faces_.assign(std::span<const std::byte>(faces));
-  counters.uploaded_bytes += faces.size();
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  casters_.draw(world, tiles, programs_, {faces_.buffer(), sizeof(ShadowFace), kBindShadowFace}, counters);
+  casters_.draw(world, tiles, kBindShadowFace, counters);
 }
 
 void LocalShadows::bind(const spec::View& view, const spec::Size& size) const {
@@ -224,7 +202,7 @@ void LocalShadows::bind(const spec::View& view, const spec::Size& size) const {
   block_.assign(std::span<const Block>(&block, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindShadowedLights, block_.buffer().id());
   draws_table_.bindStorage(kBindLocalDraws);
-  shadows_.bind(kUnitLocalShadows);
+  casters_.depths().bind(kUnitLocalShadows);
 }
 
 }  // namespace lambent::frame

@@ -18,7 +18,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
-#include "runtime/gpu/program.hpp"
 #include "runtime/lighting/local_light.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/local_shared.h"
@@ -117,14 +116,11 @@ class LocalShadows final : public SurfaceModule {
 
   LocalOptions options_;
   std::array<Cube, lighting::kMaxShadowedLights> cubes_;
-  ShadowCasters casters_{"shadow casters"};
-  ShadowCasters::Programs programs_;
-  gpu::Texture shadows_;
-  gpu::Handle<gpu::FramebufferTraits> target_;
+  ShadowCasters casters_{"local shadows", "local_caster.vert", "local_caster.frag"};
   std::uint32_t rows_ = 0;    // rows of the texture, one per light
   std::uint32_t size_ = 0;    // texels along an edge of a face
   mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
-  gpu::Table draws_table_, faces_;
+  gpu::Table draws_table_;
   std::vector<LocalDraw> draws_;
   // draws_ follows from the groups' masks, the materials that shine as lights, the lights that shine,
   // residency and transforms.

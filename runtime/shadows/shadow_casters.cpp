@@ -13,6 +13,49 @@ namespace {
 
 constexpr float kClear = 0.5f;
 
+// Holds the state that casters must share to go into one multi-draw.
+struct State {
+  std::uint32_t geometry_page = 0;
+  bool masked = false;
+  SurfaceTextures textures;
+  auto operator<=>(const State&) const = default;
+};
+
+struct Run {
+  std::size_t tile = 0;
+  State state;
+  std::uint32_t first_command = 0, command_count = 0;
+};
+
+State stateOf(const World& world, const ShadowCaster& caster) {
+  State state{.geometry_page = caster.block.page, .masked = caster.masked, .textures = {}};
+  if (!caster.masked) return state;
+  const std::int32_t texture = world.material(caster.draw).base_color_texture.texture;
+  const std::uint32_t bundle = world.residency().draws()[caster.draw].bundle;
+  if (texture >= 0) state.textures = {.bundle = static_cast<std::int32_t>(bundle), .base_color = texture};
+  return state;
+}
+
+void appendRuns(const World& world, const ShadowCasters::Tile& tile, std::size_t index,
+                std::vector<Run>& runs, std::vector<DrawCommand>& commands) {
+  struct Item {
+    State state;
+    std::uint32_t draw = 0;
+  };
+  std::vector<Item> items;
+  for (const ShadowCaster* caster : tile.casters) items.push_back({stateOf(world, *caster), caster->draw});
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.state < b.state; });
+  for (const Item& item : items) {
+    if (runs.empty() || runs.back().tile != index || runs.back().state != item.state)
+      runs.push_back({index, item.state, static_cast<std::uint32_t>(commands.size()), 0});
+    ++runs.back().command_count;
+    const streaming::ResidentMesh& mesh =
+        world.residency().meshes()[world.residency().draws()[item.draw].mesh];
+    commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, item.draw});
+  }
+}
+
 }  // namespace
 
 bool ShadowCaster::operator==(const ShadowCaster& other) const {
@@ -22,20 +65,26 @@ bool ShadowCaster::operator==(const ShadowCaster& other) const {
          alpha_cutoff == other.alpha_cutoff;
 }
 
-ShadowCasters::ShadowCasters(std::string_view label) : records_(label), commands_(label), indices_(label) {}
-
-Result<ShadowCasters::Programs> ShadowCasters::compile(std::string_view label, std::string_view vertex,
-                                                       std::string_view fragment) {
-  Programs programs;
+Result<void> ShadowCasters::compile() {
   for (const bool masked : {false, true}) {
+    if (programs_[masked ? 1 : 0]) continue;
     std::vector<gpu::Define> defines;
     if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
     Result<gpu::Program> program = gpu::Program::create(
-        label, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}, kShadowShaders, defines);
+        label_, {{GL_VERTEX_SHADER, vertex_}, {GL_FRAGMENT_SHADER, fragment_}}, kShadowShaders, defines);
     if (!program) return failAgain(program.error());
-    programs[masked ? 1 : 0] = std::move(*program);
+    programs_[masked ? 1 : 0] = std::move(*program);
   }
-  return programs;
+  return {};
+}
+
+void ShadowCasters::resize(std::uint32_t width, std::uint32_t height) {
+  depths_ = gpu::Texture(label_, {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+  GLuint id = 0;
+  glCreateFramebuffers(1, &id);
+  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
+  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, depths_.id(), 0);
+  glNamedFramebufferDrawBuffer(id, GL_NONE);
 }
 
 bool ShadowCasters::follow(const World& world) {
@@ -74,48 +123,25 @@ bool ShadowCasters::follow(const World& world) {
   return true;
 }
 
-ShadowCasters::State ShadowCasters::stateOf(const World& world, const ShadowCaster& caster) {
-  State state{.geometry_page = caster.block.page, .masked = caster.masked, .textures = {}};
-  if (!caster.masked) return state;
-  const std::int32_t texture = world.material(caster.draw).base_color_texture.texture;
-  const std::uint32_t bundle = world.residency().draws()[caster.draw].bundle;
-  if (texture >= 0) state.textures = {.bundle = static_cast<std::int32_t>(bundle), .base_color = texture};
-  return state;
-}
-
-void ShadowCasters::appendRuns(const World& world, const Tile& tile, std::size_t index,
-                               std::vector<Run>& runs, std::vector<DrawCommand>& commands) {
-  struct Item {
-    State state;
-    std::uint32_t draw = 0;
-  };
-  std::vector<Item> items;
-  for (const ShadowCaster* caster : tile.casters) items.push_back({stateOf(world, *caster), caster->draw});
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.state < b.state; });
-  for (const Item& item : items) {
-    if (runs.empty() || runs.back().tile != index || runs.back().state != item.state)
-      runs.push_back({index, item.state, static_cast<std::uint32_t>(commands.size()), 0});
-    ++runs.back().command_count;
-    const streaming::ResidentMesh& mesh =
-        world.residency().meshes()[world.residency().draws()[item.draw].mesh];
-    commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, item.draw});
-  }
-}
-
-void ShadowCasters::draw(World& world, std::span<const Tile> tiles, const Programs& programs,
-                         const TileViews& views, gpu::Counters& counters) {
+void ShadowCasters::draw(World& world, std::span<const Tile> tiles, GLuint binding, gpu::Counters& counters) {
   std::vector<SurfaceDraw> records;
   records.reserve(world.residency().draws().size());
   for (std::size_t i = 0; i < world.residency().draws().size(); ++i) records.push_back(describe(world, i));
   std::vector<Run> runs;
   std::vector<DrawCommand> commands;
-  for (std::size_t t = 0; t < tiles.size(); ++t) appendRuns(world, tiles[t], t, runs, commands);
+  std::vector<std::byte> views;
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    appendRuns(world, tiles[t], t, runs, commands);
+    views.insert(views.end(), tiles[t].view.begin(), tiles[t].view.end());
+  }
   records_.assign(std::span<const SurfaceDraw>(records));
   commands_.assign(std::span<const DrawCommand>(commands));
+  views_.assign(std::span<const std::byte>(views));
   indices_.reserve(records.size());
-  counters.uploaded_bytes += records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand);
+  counters.uploaded_bytes +=
+      records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand) + views.size();
 
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
@@ -135,12 +161,13 @@ void ShadowCasters::draw(World& world, std::span<const Tile> tiles, const Progra
     const Tile& tile = tiles[run.tile];
     glViewport(static_cast<GLint>(tile.x), static_cast<GLint>(tile.y), static_cast<GLsizei>(tile.size),
                static_cast<GLsizei>(tile.size));
-    glBindBufferRange(GL_UNIFORM_BUFFER, views.binding, views.buffer.id(), static_cast<GLintptr>(tile.view),
-                      static_cast<GLsizeiptr>(views.bytes));
+    constexpr std::size_t kBytes = sizeof(tile.view);
+    glBindBufferRange(GL_UNIFORM_BUFFER, binding, views_.buffer().id(),
+                      static_cast<GLintptr>(kBytes * run.tile), static_cast<GLsizeiptr>(kBytes));
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
     indices_.bind(geometry);
-    programs[run.state.masked ? 1 : 0].use();
+    programs_[run.state.masked ? 1 : 0].use();
     if (run.state.masked) units_.bind(world, run.state.textures);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

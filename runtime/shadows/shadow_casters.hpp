@@ -1,11 +1,12 @@
 // Owns the shadow casters: all resident opaque and masked draws of a world, both sides of each. It draws them
 // into tiles of a depth texture, for the shadow cubes of local lights and the shadow maps of key lights.
-// Render thread only; it reports no errors.
+// Render thread only.
 #pragma once
 
 #include <array>
-#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -39,51 +40,50 @@ struct ShadowCaster {
 
 class ShadowCasters {
  public:
-  explicit ShadowCasters(std::string_view label);
+  // Both shaders are compiled for opaque casters and for masked ones.
+  ShadowCasters(std::string_view label, std::string_view vertex, std::string_view fragment)
+      : label_(label),
+        vertex_(vertex),
+        fragment_(fragment),
+        records_(label),
+        commands_(label),
+        views_(label),
+        indices_(label) {}
+  // Does nothing if it was called before. Fails if a shader does not compile on this device.
+  Result<void> compile();
 
   // Gathers the casters again if the world changed since the last call, and returns whether it did.
   bool follow(const World& world);
   const std::vector<ShadowCaster>& all() const { return casters_; }
 
+  // Makes an empty texture of this size in texels.
+  void resize(std::uint32_t width, std::uint32_t height);
+  const gpu::Texture& depths() const { return depths_; }
+
   // Describes a square of the texture, and the casters drawn into it.
   struct Tile {
     std::uint32_t x = 0, y = 0, size = 0;  // in texels
-    std::size_t view = 0;                  // offset in bytes of its uniform block in the buffer of views
+    // Its uniform block; OpenGL 4.5 asks for no larger alignment of these.
+    std::array<std::byte, 256> view{};
     std::vector<const ShadowCaster*> casters;
+
+    template <typename View>
+    void setView(const View& block) {
+      static_assert(sizeof(View) <= sizeof(view));
+      std::memcpy(view.data(), &block, sizeof(View));
+    }
   };
-  // Holds uniform blocks, one for each tile.
-  struct TileViews {
-    const gpu::Buffer& buffer;
-    std::size_t bytes = 0;  // size of a block
-    GLuint binding = 0;
-  };
-  // Holds the programs for opaque casters and for masked ones, in this order.
-  using Programs = std::array<gpu::Program, 2>;
-  static Result<Programs> compile(std::string_view label, std::string_view vertex, std::string_view fragment);
-  // Clears the tiles of the bound framebuffer's depth to 1 and draws them. Changes viewport, scissor, depth
-  // and culling state.
-  void draw(World& world, std::span<const Tile> tiles, const Programs& programs, const TileViews& views,
-            gpu::Counters& counters);
+  // Clears the tiles to 1 and draws them, with their uniform blocks at this binding. Changes the bound
+  // framebuffer, viewport, scissor, depth and culling state.
+  void draw(World& world, std::span<const Tile> tiles, GLuint binding, gpu::Counters& counters);
 
  private:
-  // Holds the state that casters must share to go into one multi-draw.
-  struct State {
-    std::uint32_t geometry_page = 0;
-    bool masked = false;
-    SurfaceTextures textures;
-    auto operator<=>(const State&) const = default;
-  };
-  struct Run {
-    std::size_t tile = 0;
-    State state;
-    std::uint32_t first_command = 0, command_count = 0;
-  };
-  static State stateOf(const World& world, const ShadowCaster& caster);
-  static void appendRuns(const World& world, const Tile& tile, std::size_t index, std::vector<Run>& runs,
-                         std::vector<DrawCommand>& commands);
-
+  std::string_view label_, vertex_, fragment_;  // refer to literals
+  std::array<gpu::Program, 2> programs_;        // for opaque casters and for masked ones
+  gpu::Texture depths_;
+  gpu::Handle<gpu::FramebufferTraits> target_;
   std::vector<ShadowCaster> casters_;
-  gpu::Table records_, commands_;
+  gpu::Table records_, commands_, views_;
   DrawIndices indices_;
   TextureUnits units_;
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> changed_;  // residency, transforms, materials

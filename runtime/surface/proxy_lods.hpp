@@ -17,7 +17,7 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/evaluate/kernels.hpp"
+#include "runtime/gpu/program.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/local_light.hpp"
@@ -68,7 +68,7 @@ class ProxyLods {
              std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
              gpu::Counters& counters);
 
-  evaluate::Kernels programs_;
+  gpu::Programs programs_;
   gpu::VertexArray no_vertices_;
   std::vector<Body> bodies_;
   std::map<std::pair<std::uint64_t, bundle::GroupIndex>, std::uint32_t> slots_;  // keyed by id

@@ -16,7 +16,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
-#include "runtime/evaluate/kernels.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/probe_places.hpp"
 #include "runtime/lighting/sky.hpp"
@@ -77,7 +77,7 @@ class ReflectionProbes final : public SurfaceModule {
   Result<void> filter(std::size_t probe, gpu::Counters& counters);
 
   const SpecularEnvironmentModule& environment_;
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<lighting::ReflectedLobe> lobes_;  // one per level
   std::vector<glm::vec3> places_;
   std::vector<std::uint8_t> captured_;  // one per place

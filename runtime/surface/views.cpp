@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <ranges>
 
 #include <fmt/format.h>
@@ -10,8 +9,6 @@
 namespace lambent::frame {
 
 namespace {
-
-constexpr std::uint32_t kTransferBands = 8;
 
 constexpr bool inOrder() {
   for (std::size_t i = 0; i < kSurfaceViews.size(); ++i)
@@ -26,7 +23,6 @@ std::string knownViews() {
   for (const SurfaceViewRow& row : kSurfaceViews) {
     if (!known.empty()) known += ", ";
     known += row.name;
-    if (row.view == SurfaceView::TransferBand) known += fmt::format("[:0..{}]", kTransferBands - 1);
   }
   return known;
 }
@@ -34,26 +30,14 @@ std::string knownViews() {
 }  // namespace
 
 Result<ViewChoice> parseView(std::string_view word) {
-  const std::size_t colon = word.find(':');
-  const std::string_view name = word.substr(0, colon);
-  const auto row = std::ranges::find(kSurfaceViews, name, &SurfaceViewRow::name);
-  const auto unknown = [&](const std::string& problem) {
-    return fail("view", fmt::format("\"{}\" {}", word, problem), "give one of " + knownViews());
-  };
-  if (row == kSurfaceViews.end()) return unknown("is not known");
-  ViewChoice choice{.view = row->view};
-  if (colon == std::string_view::npos) return choice;
-  if (row->view != SurfaceView::TransferBand) return unknown("has no bands");
-  const std::string_view band = word.substr(colon + 1);
-  const auto [end, error] = std::from_chars(band.data(), band.data() + band.size(), choice.band);
-  if (error != std::errc{} || end != band.data() + band.size() || choice.band >= kTransferBands)
-    return unknown("names no band");
-  return choice;
+  const auto row = std::ranges::find(kSurfaceViews, word, &SurfaceViewRow::name);
+  if (row == kSurfaceViews.end())
+    return fail("view", fmt::format("\"{}\" is not known", word), "give one of " + knownViews());
+  return ViewChoice{.view = row->view};
 }
 
 std::string wordOf(const ViewChoice& choice) {
-  const std::string name(rowOf(choice.view).name);
-  return choice.view == SurfaceView::TransferBand ? fmt::format("{}:{}", name, choice.band) : name;
+  return std::string(rowOf(choice.view).name);
 }
 
 ViewLegend legendOf(const ViewChoice& choice, float largest_error) {
@@ -63,11 +47,6 @@ ViewLegend legendOf(const ViewChoice& choice, float largest_error) {
                     .colors = row.colors,
                     .min = row.min,
                     .max = row.max};
-  if (choice.view == SurfaceView::TransferBand) {
-    legend.name = fmt::format("Transfer, band {}", choice.band);
-    // Bands in which unoccluded surfaces have almost nothing show what shadows do.
-    legend.max = std::max(openBandEnergy(choice.band), 0.01f);
-  }
   if (choice.view == SurfaceView::ErrorEstimate && largest_error > 0.0f) legend.max = largest_error;
   return legend;
 }

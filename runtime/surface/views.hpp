@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <iterator>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +21,6 @@ enum class SurfaceView : std::uint8_t {
   Final,
   Irradiance,
   TransferDc,
-  TransferBand,
   ErrorEstimate,
   Importance,
   ClusterIds,
@@ -33,7 +30,6 @@ enum class SurfaceView : std::uint8_t {
 
 struct ViewChoice {
   SurfaceView view = SurfaceView::Final;
-  std::uint32_t band = 1;  // for TransferBand, 0..7
   bool operator==(const ViewChoice&) const = default;
 };
 
@@ -58,16 +54,13 @@ struct SurfaceViewRow {
 // is l_00 = 1.
 inline constexpr float kOpenDc = 0.28209479177387814f;
 
-inline constexpr std::array<SurfaceViewRow, 9> kSurfaceViews = {{
+inline constexpr std::array<SurfaceViewRow, 8> kSurfaceViews = {{
     {SurfaceView::Final, "final", "Final", "the light as it is", ViewColors::Light, "radiance"},
     {SurfaceView::Irradiance, "irradiance", "Irradiance",
      "E/pi that arrives at surfaces, without their own color", ViewColors::Light, "E/pi, radiance"},
     {SurfaceView::TransferDc, "transfer-dc", "Average visibility",
      "coefficient 0 of the transfer: what of uniform light arrives", ViewColors::Scale,
      "E/pi of the light y_00", 0.0f, kOpenDc},
-    {SurfaceView::TransferBand, "transfer-band", "Transfer, band",
-     "energy of one band of the transfer: transfer-band:BAND", ViewColors::Scale,
-     "squared E/pi, mean over channels"},
     {SurfaceView::ErrorEstimate, "error", "Coding error",
      "error of the coded transfer, as the bake measured it in each cell", ViewColors::Scale, "relative RMS",
      0.0f, 0.01f},
@@ -85,8 +78,7 @@ constexpr const SurfaceViewRow& rowOf(SurfaceView view) {
   return kSurfaceViews[static_cast<std::size_t>(view)];
 }
 
-// Parses "NAME" or, for the view that has bands, "NAME:BAND" with a band in 0..7. Fails, naming what is
-// known, if there is no such view or band.
+// Fails, naming what is known, if there is no such view.
 Result<ViewChoice> parseView(std::string_view word);
 // Returns the word that parseView() accepts for the choice.
 std::string wordOf(const ViewChoice& choice);
@@ -98,14 +90,6 @@ constexpr bool showsTransfer(SurfaceView view) {
 // Returns whether the picture shows light, and so has a sky and volumes and is exposed and tone-mapped.
 constexpr bool showsLight(SurfaceView view) {
   return rowOf(view).colors == ViewColors::Light;
-}
-
-// Returns the value of an unoccluded surface in TransferBand: the sum over m of ((A_l/pi) y_lm(n))² =
-// (A_l/pi)² (2l + 1) / 4 pi, which does not depend on n.
-constexpr float openBandEnergy(std::uint32_t band) {
-  constexpr float kCosineOverPi[] = {1.0f, 2.0f / 3.0f, 0.25f, 0.0f, -1.0f / 24.0f, 0.0f, 1.0f / 64.0f, 0.0f};
-  const float weight = band < std::size(kCosineOverPi) ? kCosineOverPi[band] : 0.0f;
-  return weight * weight * static_cast<float>(2 * band + 1) / (4.0f * std::numbers::pi_v<float>);
 }
 
 struct ViewLegend {

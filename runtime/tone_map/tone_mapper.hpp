@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
 
@@ -33,7 +32,7 @@ class ToneMapper {
   float exposureEv() const;
 
  private:
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<gpu::Define> defines_;
   gpu::Buffer exposure_;
   gpu::VertexArray no_vertices_;

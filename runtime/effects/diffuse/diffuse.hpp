@@ -16,7 +16,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -45,7 +44,7 @@ class Diffuse {
                const evaluate::Samples& samples);
   Result<void> runTexels(streaming::Residency& residency, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<DrawRecord> draws_;
   gpu::Table draws_table_;
   gpu::WorkList work_;
@@ -98,7 +97,7 @@ class Proxies {
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
   void writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<ProxyGroupRecord> groups_;  // indexed by group of the residency
   std::vector<ProxyTriangleRecord> triangles_;
   std::vector<ProxyEntryRecord> entries_;

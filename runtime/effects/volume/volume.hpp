@@ -16,7 +16,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/volume/volume_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -74,7 +73,7 @@ class Volume {
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   KeyedState<Held> held_;  // indexed by volume of the residency
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;
@@ -148,7 +147,7 @@ class March {
                          gpu::Counters& counters);
 
   MarchOptions options_;
-  evaluate::Kernels programs_;
+  gpu::Programs programs_;
   gpu::Table records_, blocks_;
   std::vector<std::uint32_t> first_block_;                 // index: residency volume
   ChangeGate<std::vector<std::uint64_t>> blocks_changed_;  // versions of the volumes

@@ -72,9 +72,6 @@ void makePlan(const FrameContext& frame) {
        .cubes_before = cubes_before,
        .grids = by_grids ? neighborhoods.gridsNow(frame.world, settings.neighborhoods) : PlannedGrids{}});
   if (by_grids) neighborhoods.takePairs(plan);
-  const streaming::Residency& residency = frame.world.residency();
-  frame.count("light_probes_occluded", frame.parts.apart_occlusion.update(plan, proxiesOf(residency).proxies,
-                                                                          residency.proxiesVersion()));
 }
 
 Result<void> prepareSampling(const FrameContext& frame) {
@@ -96,8 +93,14 @@ Result<void> prepareSampling(const FrameContext& frame) {
   }
   parts.capture_order = options.order;
   if (parts.proxies_changed.renew(residency.proxiesVersion())) {
-    const BodyProxies bodies = proxiesOf(residency);
-    parts.incident->captures().setProxies(bodies.proxies, frame.counters(), bodies.keys);
+    std::vector<const bundle::CaptureProxy*> proxies;  // in the order of the bodies
+    std::vector<std::uint64_t> keys;
+    for (const streaming::ResidentGroup& group : residency.groups()) {
+      if (!group.proxy) continue;
+      proxies.push_back(&*group.proxy);
+      keys.push_back(group.id);
+    }
+    parts.incident->captures().setProxies(proxies, frame.counters(), keys);
   }
   return {};
 }

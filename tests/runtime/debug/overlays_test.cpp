@@ -164,6 +164,10 @@ TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
   std::size_t beside = 0;
   for (const std::size_t i : changed) beside += glm::distance(glm::vec2(i % 64, i / 64), sun) < 6.0f;
   EXPECT_GE(beside, 6u) << "a ring about it";
+  ASSERT_EQ(stage.frame->parts().key_shadows.maps().size(), 1u);
+  EXPECT_LT(glm::distance(stage.frame->parts().key_shadows.maps()[0].light.direction,
+                          stage.environment.keys()[0].direction),
+            1e-6f);
   stage.frame->setOverlays({});
   EXPECT_TRUE(changes(stage.picture(), bare).empty());
 }

@@ -122,7 +122,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   FrameSettings plain;
   plain.exposure_ev = 0.0f;
   const std::pair<const char*, const char*> changes[] = {
-      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "hann"},   {"order", "2"},
+      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "auto"},   {"order", "2"},
       {"diffuse", "off"},         {"volumes", "off"},       {"march-step", "4"},  {"captures", "off"},
       {"local-shadows", "off"},   {"neighborhoods", "off"}, {"capture-size", "8"}};
   LiveStage stage(ballAndCloud(), {kSun}, plain);
@@ -197,9 +197,9 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   stage.world.updateTransforms();
   stage.render();
   EXPECT_EQ(stage.reason("transforms"), "groups moved");
-  stage.set("window", "hann");
+  stage.set("window", "auto");
   stage.render();
-  EXPECT_EQ(stage.reason("shade"), "ringing suppression: hann");
+  EXPECT_EQ(stage.reason("shade"), "ringing suppression: auto");
   stage.set("exposure", "1");
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "");

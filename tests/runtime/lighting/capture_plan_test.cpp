@@ -1,4 +1,4 @@
-// Tests what the light capture decides without a GPU: tiles, pages, and which bodies are closed.
+// Tests what the light capture decides without a GPU: tiles and pages.
 #include "runtime/lighting/capture_plan.hpp"
 
 #include <array>
@@ -30,28 +30,6 @@ TEST(CapturePlan, OnePointAloneAlwaysGetsAPage) {
   const capture::Plan plan = capture::plan(options, proxies, bodies, std::vector<CapturePoint>(3));
   EXPECT_EQ(plan.points.size(), 3u);
   for (const capture::Page& page : plan.pages) EXPECT_LT(page.height, 8192u);
-}
-
-TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
-  const auto closed = [](const bundle::CaptureProxy& proxy) {
-    return capture::isClosed(proxy, proxy.levels[0]);
-  };
-  EXPECT_TRUE(closed(cubeProxy()));
-  EXPECT_FALSE(closed(cubeProxy(true))) << "a room faces inwards";
-  EXPECT_FALSE(closed(squareProxy()));
-  bundle::CaptureProxy open = cubeProxy();
-  --open.levels[0].triangle_count;
-  EXPECT_FALSE(closed(open));
-  // A room is within a house. The inner walls are not visible from outside, and their outsides are dark.
-  bundle::CaptureProxy both = cubeProxy();
-  const bundle::CaptureProxy room = cubeProxy(true);
-  for (const glm::vec3& p : room.positions) both.positions.push_back(0.5f * p);
-  for (bundle::ProxyTriangle triangle : room.triangles) {
-    for (std::uint32_t& v : triangle.vertices) v += 8;
-    both.triangles.push_back(triangle);
-  }
-  both.levels[0].triangle_count = 24;
-  EXPECT_FALSE(closed(both));
 }
 
 TEST(CapturePlan, TilesAreApartAndInTheAtlas) {

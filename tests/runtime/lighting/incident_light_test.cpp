@@ -17,20 +17,20 @@ const CaptureOptions kOptions{.size = 8, .subsamples = 2, .order = 3};
 
 // Finds by a walk over all bodies what has changed since a sample's surroundings were drawn.
 struct Walk {
-  std::vector<BodyPose> poses;  // by body, as drawn
+  std::vector<IncidentBody> bodies;  // as drawn
   std::vector<bool> seen;
   glm::vec3 position_ws{0.0f};
 
   bool seesNothing() const { return std::ranges::find(seen, true) == seen.end(); }
-  float changeTo(const Walk& now, float radius_m) const {
+  float changeTo(const Walk& now) const {
     float squared = 0.0f;
-    for (std::size_t b = 0; b < poses.size(); ++b) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
       if (!seen[b] && !now.seen[b]) continue;
       const bool other = seen[b] != now.seen[b];
-      const BodyPose& before = seen[b] ? poses[b] : now.poses[b];
-      const BodyPose& after = now.seen[b] ? now.poses[b] : poses[b];
-      const float part = shareOfLight(changeOf(before, position_ws, after, now.position_ws, radius_m), other,
-                                      kOptions.order);
+      const IncidentBody& before = seen[b] ? bodies[b] : now.bodies[b];
+      const IncidentBody& after = now.seen[b] ? now.bodies[b] : bodies[b];
+      const float part =
+          shareOfLight(changeOf(before, position_ws, after, now.position_ws), other, kOptions.order);
       squared += part * part;
     }
     return std::sqrt(squared);
@@ -81,17 +81,14 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
       }
     std::size_t expected = 0, waiting = 0;
     for (std::uint32_t g = 0; g < kBodies; ++g) {
-      Walk now{.poses = {}, .seen = {}, .position_ws = groups[g].samples_ws[0]};
+      Walk now{.bodies = bodies, .seen = {}, .position_ws = groups[g].samples_ws[0]};
       for (std::uint32_t b = 0; b < kBodies; ++b) {
-        now.poses.push_back({.world_from_proxy = bodies[b].body.world_from_proxy,
-                             .center_ws = bodies[b].center_ws,
-                             .radiance_drift = bodies[b].radiance_drift});
         const bool left_out = b == g || std::ranges::count(groups[g].left_out, b) > 0;
         now.seen.push_back(!left_out && capture::sees(kOptions, now.position_ws,
                                                       capture::BodySphere::of(bodies[b].body, bounds)));
       }
       ASSERT_FALSE(now.seesNothing()) << "all stand close to each other here";
-      const float change = step == 0 ? kWhollyChanged : drawn[g].changeTo(now, bodies[0].radius_m);
+      const float change = step == 0 ? kWhollyChanged : drawn[g].changeTo(now);
       if (change > kMovingChange) {
         ++expected;
         drawn[g] = std::move(now);

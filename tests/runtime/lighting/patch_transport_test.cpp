@@ -173,7 +173,7 @@ std::vector<float> receivedAll(const Patches& patches, const std::vector<glm::ve
 
 glm::vec3 gathered(const PatchTransport& transport, const std::vector<std::uint16_t>& links,
                    std::size_t point, const std::vector<glm::vec3>& by_patch) {
-  const std::vector<glm::vec3> given_off = transport.regions().means(by_patch);
+  const std::vector<glm::vec3> given_off = transport.patches().means(by_patch);
   glm::vec3 sum(0.0f);
   for (std::size_t k = 0; k < kLinks; ++k)
     if (const std::uint16_t patch = links[kLinks * point + k]; patch < given_off.size())
@@ -345,24 +345,23 @@ TEST(PatchTransport, ADarkBoxOnALitFloorStaysDark) {
     EXPECT_EQ(gathered(transport, links, p, given_off).r, 0.0f) << p;
 }
 
-TEST(PatchRegions, HoldTheMeansOfTheirPatchesAndAllOfThemAtEachLevel) {
+TEST(Patches, RegionsHoldTheMeansOfTheirPatchesAndAllOfThemAtEachLevel) {
   const Patches patches(RoomBuilder().wall({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, glm::vec3(0.5f)).surface(), 200);
-  const PatchRegions regions(patches);
   std::vector<glm::vec3> values;
   for (const Patch& patch : patches.all()) values.push_back(patch.points[0]);
-  const std::vector<glm::vec3> means = regions.means(values);
-  ASSERT_EQ(means.size(), regions.size());
-  for (std::size_t level = 0; level < regions.levelsOf(0); ++level) {
+  const std::vector<glm::vec3> means = patches.means(values);
+  ASSERT_EQ(means.size(), patches.regionCount());
+  for (std::size_t level = 0; level < patches.levelsOf(0); ++level) {
     const RayHit hit{.triangle = 0, .b = 0.3f, .c = 0.2f, .back = false};
-    const auto corners = regions.cornersAt(hit, level);
+    const auto corners = patches.cornersAt(hit, level);
     const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
-    const float size = std::sqrt(regions.areaOf(0, level));
-    EXPECT_LT(glm::distance(means[regions.regionAt(hit, level)], middle), size) << level;
+    const float size = std::sqrt(patches.areaOf(0, level));
+    EXPECT_LT(glm::distance(means[patches.regionAt(hit, level)], middle), size) << level;
   }
   // The last level is the triangle itself.
   const RayHit anywhere{.triangle = 1, .b = 0.1f, .c = 0.1f, .back = false};
-  const std::size_t whole = regions.regionAt(anywhere, regions.levelsOf(1) - 1);
-  EXPECT_NEAR(regions.areaOf(1, regions.levelsOf(1) - 1), 1.5f, 1e-4f);
+  const std::size_t whole = patches.regionAt(anywhere, patches.levelsOf(1) - 1);
+  EXPECT_NEAR(patches.areaOf(1, patches.levelsOf(1) - 1), 1.5f, 1e-4f);
   EXPECT_NEAR(means[whole].x, 1.0f, 0.02f);
 }
 

@@ -118,26 +118,4 @@ TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
   EXPECT_EQ(stage.frame->counts()["neighborhood_pairs"], 1u);
 }
 
-TEST_F(BesideLights, WhatABodyHidesIsNotSentOnEither) {
-  // The body is between the lamp and the floor and reaches the floor by its grid, but it is in no shadow
-  // cube.
-  NeighborhoodScene scene;
-  scene.receivers = {floorOf(0.3f)};
-  scene.receivers[0].full = glm::vec3(kFull);
-  scene.bodies = {sphereAt({0.0f, 1.2f, 0.0f}, 0.5f, glm::uvec3(21), glm::vec3(2.0f))};
-  scene.bodies[0].sphere_radius = 0.5f;
-  BesideStage stage(scene);
-  stage.half = 0.3f;
-  const glm::vec3 lamp(0.0f, 2.0f, 0.0f), aside(2.0f, 1.0f, 0.0f);
-  stage.moveLamp(lamp);
-  const Expected straight = [&](const glm::vec3& place) { return glm::vec3(openAt(lamp, place)); };
-  EXPECT_LT(stage.worstError(stage.picture(), straight, 0.29f), 0.004);
-  EXPECT_EQ(stage.frame->counts()["neighborhood_pairs"], 1u);
-  stage.moveLamp(aside);
-  const Expected both = [&](const glm::vec3& place) {
-    return glm::vec3(openAt(aside, place) + (kFull - 1.0f) * bandsOf(aside));
-  };
-  EXPECT_LT(stage.worstError(stage.picture(), both, 0.29f), 0.004);
-}
-
 }  // namespace lambent::frame

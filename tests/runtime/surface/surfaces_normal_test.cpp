@@ -115,11 +115,10 @@ TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice
   description.materials = {first, second};
 
   streaming::Residency residency;
-  ASSERT_TRUE(residency.add(description));
+  ASSERT_TRUE(residency.add(description, 0));
   for (std::uint32_t i = 0; i < 5; ++i)
-    ASSERT_TRUE(residency.upload(
-        0, streaming::ImageChunk{
-               .image = i, .width = 4, .height = 3, .rgba = std::vector<std::uint8_t>(4 * 12, 188)}));
+    ASSERT_TRUE(
+        residency.upload(0, streaming::ImageChunk{{i}, 4, 3, std::vector<std::uint8_t>(4 * 12, 188)}));
 
   const streaming::ResidentBundle& bundle = residency.bundles()[0];
   const bool color[] = {true, true, false, true, true}, normals[] = {false, false, true, true, false};

@@ -209,20 +209,6 @@ TEST(ClusterIds, ComeBackAtBothWidths) {
   }
 }
 
-TEST(ClusterIds, NeverNameAClusterThatDoesNotExist) {
-  std::mt19937 random(3);
-  for (int round = 0; round < 200; ++round) {
-    std::vector<std::byte> bytes(6);
-    for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() & 0xff);
-    if (const auto narrow = decodeClusterIds(bytes, 100, 6, "cell 0")) {
-      for (const std::uint32_t id : *narrow) EXPECT_LT(id, 100u);
-    }
-    if (const auto wide = decodeClusterIds(bytes, 300, 3, "cell 0")) {
-      for (const std::uint32_t id : *wide) EXPECT_LT(id, 300u);
-    }
-  }
-}
-
 TEST(Positions, KeepTheCellsOrderWithinAClusterAndMakePlanesDense) {
   const std::vector<std::uint32_t> cluster_of = {2, 0, 1, 0, 2, 1, 0};
   EXPECT_EQ(positionsOf(cluster_of, 3), (std::vector<std::uint32_t>{1, 3, 6, 2, 5, 0, 4}));

@@ -47,7 +47,7 @@ struct Bench {
       places.push_back({.world_from_group = glm::quat_cast(glm::mat3(world_from_group[v])),
                         .order = std::max(built[v].shape.order, 1u)});
     }
-    EXPECT_TRUE(residency.add(description));
+    EXPECT_TRUE(residency.add(description, 0));
   }
 
   void upload(const streaming::Ready& item) {
