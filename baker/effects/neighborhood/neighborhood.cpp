@@ -234,36 +234,6 @@ namespace {
 constexpr std::size_t kProbeRays = 256;
 constexpr int kLeastMatrixBands = 4;
 
-// Changed holds a grid and the change at its points. The grid is empty if nothing is to be baked.
-struct Changed {
-  std::optional<GridPlacement> grid;
-  std::optional<GridChange> change;
-};
-
-std::optional<Changed> changeAround(const Body& body, const NeighborhoodSettings& settings,
-                                    const ChangeShape& shape, const BakeContext& context) {
-  context.progress.begin("reach of the neighborhood");
-  const CapDirections probe_directions(kProbeRays);
-  PointChange probe(body, probe_directions, shape);
-  const ReceiverMeter meter(shape, settings.facing);
-  Changed out;
-  out.grid = placeGrid(settings.placement, [&](const glm::vec3& point) {
-    if (context.stopped()) return 0.0;
-    probe.look(point);
-    return meter.measure(probe.visibility(), probe.bounced());
-  });
-  if (context.stopped()) return std::nullopt;
-  if (!out.grid) return out;
-  out.change = changeOnGrid(body, *out.grid, shape, settings.rays, context.part("change"));
-  if (!out.change) return std::nullopt;
-  if (settings.fit_between_points) {
-    GridChange& change = *out.change;
-    fitBetweenPoints(*out.grid, change.outside, shape.visibilitySize(), change.visibility);
-    fitBetweenPoints(*out.grid, change.outside, shape.bouncedSize(), change.bounced);
-  }
-  return out;
-}
-
 }  // namespace
 
 bool findNeighborhood(const BakeContext& context, BakedAround& around) {
@@ -282,17 +252,31 @@ std::optional<BakedAround> bakeNeighborhood(const Body& body, const Neighborhood
                           .order_out = all_bands ? body.order() : kDiffuseBands,
                           .channels = body.channels()};
   if (!(body.radius() > 0.0f)) return out;
-  const auto changed = changeAround(body, settings, shape, context);
-  if (!changed) return std::nullopt;
-  if (!changed->grid) return out;
-  const GridPlacement& grid = *changed->grid;
+  context.progress.begin("reach of the neighborhood");
+  const CapDirections probe_directions(kProbeRays);
+  PointChange probe(body, probe_directions, shape);
+  const ReceiverMeter meter(shape, settings.facing);
+  const auto placed = placeGrid(settings.placement, [&](const glm::vec3& point) {
+    if (context.stopped()) return 0.0;
+    probe.look(point);
+    return meter.measure(probe.visibility(), probe.bounced());
+  });
+  if (context.stopped()) return std::nullopt;
+  if (!placed) return out;
+  const GridPlacement& grid = *placed;
+  auto change = changeOnGrid(body, grid, shape, settings.rays, context.part("change"));
+  if (!change) return std::nullopt;
+  if (settings.fit_between_points) {
+    fitBetweenPoints(grid, change->outside, shape.visibilitySize(), change->visibility);
+    fitBetweenPoints(grid, change->outside, shape.bouncedSize(), change->bounced);
+  }
   context.progress.begin("coding the neighborhood", grid.count(), "points");
   CachedCoding coding(context);
-  auto coded = codeChange(*changed->change, grid, settings.origin, settings.coding, coding, context.progress);
+  auto coded = codeChange(*change, grid, settings.origin, settings.coding, coding, context.progress);
   if (!coded) return std::nullopt;
-  out.figures = {.inside_points = changed->change->insidePoints(),
-                 .rays = changed->change->rays,
-                 .rays_kept = changed->change->rays_kept,
+  out.figures = {.inside_points = change->insidePoints(),
+                 .rays = change->rays,
+                 .rays_kept = change->rays_kept,
                  .error = coded->error,
                  .change_error = coded->change_error};
   out.grid = BakedNeighborhood{.size = grid.size,
