@@ -435,29 +435,10 @@ void appendLookups(std::uint32_t size, std::uint32_t subsamples, const PlannedPo
   }
 }
 
-float visibleShare(const LightQuery& query, std::uint32_t hidden_bits, sh::LightVector& light) {
-  if (hidden_bits == 0) return 1.0f;
-  const std::vector<glm::vec3> directions = discDirections(query);
-  if (directions.empty()) return 1.0f;
-  const auto hidden = static_cast<std::size_t>(std::popcount(hidden_bits));
-  if (hidden >= directions.size()) return 0.0f;
-  const double share = 1 - static_cast<double>(hidden) / static_cast<double>(directions.size());
-  if (query.radiance == glm::vec3(0.0f)) return static_cast<float>(share);
-  std::array<double, sh::kMaxCoefficients> y, of_visible{}, of_all{};
-  const auto count = static_cast<std::size_t>(sh::coefficientCount(light.order));
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    sh::evaluate(light.order, glm::dvec3(directions[k]), y);
-    for (std::size_t i = 0; i < count; ++i) {
-      of_all[i] += y[i];
-      if ((hidden_bits >> k & 1u) == 0) of_visible[i] += y[i];
-    }
-  }
-  const double radius = std::min(static_cast<double>(query.angular_radius_rad), std::numbers::pi);
-  const double weight =
-      2 * std::numbers::pi * (1 - std::cos(radius)) / static_cast<double>(directions.size());
-  for (std::size_t i = 0; i < count; ++i)
-    light.c[i] += glm::vec3(glm::dvec3(query.radiance) * (weight * (of_visible[i] - share * of_all[i])));
-  return static_cast<float>(share);
+float visibleShare(const LightQuery& query, std::uint32_t hidden_bits) {
+  const auto hidden = static_cast<double>(std::popcount(hidden_bits));
+  if (hidden == 0.0) return 1.0f;  // also where a query has no directions
+  return static_cast<float>(1 - hidden / static_cast<double>(discDirections(query).size()));
 }
 
 }  // namespace lambent::lighting::capture

@@ -456,15 +456,12 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
   for (const spec::Disc& disc : environment.discs()) {
     std::optional<LightQuery> query;
     if (disc.radiance != glm::vec3(0.0f))
-      query = LightQuery{
-          .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
+      query = LightQuery{.direction = disc.direction, .angular_radius_rad = disc.radius_rad};
     ask(query, drawn.query_of_disc);
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
     std::optional<LightQuery> query;
     if (group.carriers[k].harmonics()) query = queryOf(lights[k], point.position_ws);
-    // The part of the light that is kept apart has no shape to correct in the light without it.
-    if (query) query->radiance *= 1.0f - group.carriers[k].apart();
     ask(query, drawn.query_of_light);
   }
 }
