@@ -459,7 +459,7 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
     const std::span<const glm::vec4> sums = std::span(results).subspan(record * 2 * count, 2 * count);
     combine(sums, run_.uncovered[record], run_.sky, sky_through_texels_, out);
     for (std::size_t q = 0; q < point.queries.size(); ++q)
-      out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
+      out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q]);
   }
   return lights;
 }

@@ -4,9 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
@@ -181,29 +181,6 @@ void mergeOverlaps(std::vector<TexelRect>& rects) {
   }
 }
 
-// Arranges tiles in rows, the highest first, and returns the height that they need.
-std::uint32_t shelve(std::span<Tile> tiles, std::uint32_t subsamples) {
-  std::vector<std::size_t> order(tiles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return tiles[a].texels.height() > tiles[b].texels.height();
-  });
-  std::uint32_t x = 0, shelf = 0, next_shelf = 0;
-  for (const std::size_t i : order) {
-    const std::uint32_t width = tiles[i].texels.width() * subsamples,
-                        height = tiles[i].texels.height() * subsamples;
-    if (x + width > kAtlasWidth) {
-      x = 0;
-      shelf = next_shelf;
-    }
-    tiles[i].x = x;
-    tiles[i].y = shelf;
-    x += width;
-    next_shelf = std::max(next_shelf, shelf + height);
-  }
-  return next_shelf;
-}
-
 // Appends the tiles and draws of one point to the plan.
 class PointPlanner {
  public:
@@ -273,39 +250,48 @@ class PointPlanner {
   std::vector<TexelRect> rects_;
 };
 
-// Puts as many points on each page as fit.
+// Puts as many points on each page as fit. Tiles stand in rows, the highest of each point first.
 void makePages(Plan& plan, std::uint32_t subsamples) {
-  const auto points = static_cast<std::uint32_t>(plan.points.size());
-  std::uint32_t first_draw = 0;
-  for (std::uint32_t first = 0; first < points;) {
-    // The area gives the first guess; fewer points are taken if the rows waste too much.
-    constexpr std::uint64_t kArea = std::uint64_t{kAtlasWidth} * kAtlasHeight;
-    std::uint32_t last = first;
-    for (std::uint64_t area = 0, texel_count = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
-      const PlannedPoint& p = plan.points[last];
-      for (std::uint32_t t = 0; t < p.tile_count; ++t) {
-        const TexelRect& texels = plan.tiles[p.first_tile + t].texels;
-        texel_count += std::uint64_t{texels.width()} * texels.height();
-      }
-      area = texel_count * subsamples * subsamples;
-      if (last > first && (area > kArea * 9 / 10 || texel_count > kMaxTexelsOfPage)) break;
+  std::uint32_t x = 0, row = 0, next_row = 0, texels = 0, draw = 0;
+  std::vector<Tile*> tiles;
+  for (std::uint32_t p = 0; p < plan.points.size(); ++p) {
+    const PlannedPoint& point = plan.points[p];
+    const std::uint32_t end_tile = point.first_tile + point.tile_count;
+    tiles.clear();
+    std::uint32_t own_texels = 0;
+    for (std::uint32_t t = point.first_tile; t < end_tile; ++t) {
+      tiles.push_back(&plan.tiles[t]);
+      own_texels += tiles.back()->texels.width() * tiles.back()->texels.height();
     }
-    Page page{.first_point = first, .first_draw = first_draw};
-    for (;;) {
-      const std::uint32_t first_tile = plan.points[first].first_tile,
-                          end_tile = plan.points[last - 1].first_tile + plan.points[last - 1].tile_count;
-      page.height = shelve(std::span(plan.tiles).subspan(first_tile, end_tile - first_tile), subsamples);
-      page.point_count = last - first;
-      // A point alone on a page may need up to twice its area and a row: 7168 pixels.
-      if (page.height <= kAtlasHeight || page.point_count == 1) {
-        while (first_draw < plan.draws.size() && plan.draws[first_draw].tile < end_tile) ++first_draw;
-        break;
+    std::ranges::stable_sort(tiles, std::ranges::greater(),
+                             [](const Tile* tile) { return tile->texels.height(); });
+    const auto place = [&] {
+      for (Tile* tile : tiles) {
+        const std::uint32_t width = tile->texels.width() * subsamples;
+        if (x + width > kAtlasWidth) {
+          x = 0;
+          row = next_row;
+        }
+        tile->x = x;
+        tile->y = row;
+        x += width;
+        next_row = std::max(next_row, row + tile->texels.height() * subsamples);
       }
-      last = first + (last - first + 1) / 2;
+      return next_row <= kAtlasHeight;
+    };
+    const bool room = !plan.pages.empty() && plan.pages.back().point_count < kMaxPointsOfPage &&
+                      texels + own_texels <= kMaxTexelsOfPage;
+    if (!room || !place()) {
+      plan.pages.push_back({.first_point = p, .first_draw = draw});
+      x = row = next_row = texels = 0;
+      place();  // a point alone on a page may need up to twice its area and a row: 7168 pixels
     }
-    page.draw_count = first_draw - page.first_draw;
-    plan.pages.push_back(page);
-    first = last;
+    Page& page = plan.pages.back();
+    page.height = next_row;
+    ++page.point_count;
+    texels += own_texels;
+    while (draw < plan.draws.size() && plan.draws[draw].tile < end_tile) ++draw;
+    page.draw_count = draw - page.first_draw;
   }
 }
 
@@ -449,29 +435,10 @@ void appendLookups(std::uint32_t size, std::uint32_t subsamples, const PlannedPo
   }
 }
 
-float visibleShare(const LightQuery& query, std::uint32_t hidden_bits, sh::LightVector& light) {
-  if (hidden_bits == 0) return 1.0f;
-  const std::vector<glm::vec3> directions = discDirections(query);
-  if (directions.empty()) return 1.0f;
-  const auto hidden = static_cast<std::size_t>(std::popcount(hidden_bits));
-  if (hidden >= directions.size()) return 0.0f;
-  const double share = 1 - static_cast<double>(hidden) / static_cast<double>(directions.size());
-  if (query.radiance == glm::vec3(0.0f)) return static_cast<float>(share);
-  std::array<double, sh::kMaxCoefficients> y, of_visible{}, of_all{};
-  const auto count = static_cast<std::size_t>(sh::coefficientCount(light.order));
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    sh::evaluate(light.order, glm::dvec3(directions[k]), y);
-    for (std::size_t i = 0; i < count; ++i) {
-      of_all[i] += y[i];
-      if ((hidden_bits >> k & 1u) == 0) of_visible[i] += y[i];
-    }
-  }
-  const double radius = std::min(static_cast<double>(query.angular_radius_rad), std::numbers::pi);
-  const double weight =
-      2 * std::numbers::pi * (1 - std::cos(radius)) / static_cast<double>(directions.size());
-  for (std::size_t i = 0; i < count; ++i)
-    light.c[i] += glm::vec3(glm::dvec3(query.radiance) * (weight * (of_visible[i] - share * of_all[i])));
-  return static_cast<float>(share);
+float visibleShare(const LightQuery& query, std::uint32_t hidden_bits) {
+  const auto hidden = static_cast<double>(std::popcount(hidden_bits));
+  if (hidden == 0.0) return 1.0f;  // also where a query has no directions
+  return static_cast<float>(1 - hidden / static_cast<double>(discDirections(query).size()));
 }
 
 }  // namespace lambent::lighting::capture

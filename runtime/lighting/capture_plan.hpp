@@ -98,9 +98,8 @@ Plan plan(const CaptureOptions& options, std::span<const ProxyBounds> proxies,
           std::span<const CaptureBody> bodies, std::span<const CapturePoint> points);
 
 // Measures how much of a light's disc bodies hide. Directions spread over the disc are looked up in the drawn
-// cube maps, and the visible ones also correct the shape of the light. appendLookups() turns a query and the
-// tiles of its point into pixels and depths for the GPU; visibleShare() turns the bits that come back into
-// the visible share and the correction. No GL.
+// cube maps. appendLookups() turns a query and the tiles of its point into pixels and depths for the GPU;
+// visibleShare() turns the bits that come back into the visible share. No GL.
 
 // A surface does not hide the light if it is as far away as the light, within this relative tolerance.
 inline constexpr double kSameDistance = 1e-3;
@@ -119,11 +118,8 @@ std::vector<glm::vec3> discDirections(const LightQuery& query);
 void appendLookups(std::uint32_t size, std::uint32_t subsamples, const PlannedPoint& planned,
                    std::span<const Tile> tiles, const CapturePoint& point, std::vector<Lookup>& lookups);
 
-// Returns the visible share, 0..1. If it is neither 0 nor 1, adds
-//   radiance Omega (mean over visible directions of y · visible - visible · mean over all of y)
-// to `light`, so that `visible` times the closed form of the disc plus this term has the shape of the visible
-// part.
-float visibleShare(const LightQuery& query, std::uint32_t hidden_bits, sh::LightVector& light);
+// Returns the visible share, 0..1.
+float visibleShare(const LightQuery& query, std::uint32_t hidden_bits);
 
 // Turns the sums that the GPU made over a point's tiles into the light at that point. Texels without a tile
 // see all of the sky, so the light is

@@ -34,7 +34,6 @@ struct LightQuery {
   glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit vector towards the light, world axes
   float angular_radius_rad = 0.0f;        // 0 asks for a single direction
   float distance_m = 0.0f;                // bodies beyond this distance do not hide it; 0: at infinity
-  glm::vec3 radiance{0.0f};               // corrects a partly hidden disc's shape; 0 for single directions
 };
 
 struct CapturePoint {
@@ -50,9 +49,7 @@ struct CapturePoint {
 };
 
 struct CapturedLight {
-  // This is light in world axes: the sky without its discs, and bodies. If a query's disc is partly hidden,
-  // it also holds the difference between the visible part and `visible` times the whole disc.
-  sh::LightVector light;
+  sh::LightVector light;        // in world axes: the sky without its discs, and bodies
   glm::vec3 sky_visible{1.0f};  // share of the sky's light that no body hides, per channel
   std::vector<float> visible;   // for each query, 0..1
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -38,7 +39,53 @@ void add(sh::LightVector& sum, const sh::LightVector& light, float factor) {
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) sum.c[i] += factor * light.c[i];
 }
 
+// Returns how far points at unit distance from the origin may have moved, from the columns of rotation and
+// scale.
+float turnBetween(const glm::mat4& a, const glm::mat4& b) {
+  float turn = 0.0f;
+  for (int column = 0; column < 3; ++column)
+    turn = std::max(turn, glm::distance(glm::vec3(a[column]), glm::vec3(b[column])));
+  return turn;
+}
+
 }  // namespace
+
+BodyChange changeOf(const IncidentBody& before, const glm::vec3& place_before, const IncidentBody& after,
+                    const glm::vec3& place_after) {
+  constexpr float kHalfTurn_rad = std::numbers::pi_v<float>;
+  const float radius_m = after.radius_m;
+  const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
+  const glm::vec3 offset_before = before.center_ws - place_before,
+                  offset_after = after.center_ws - place_after;
+  const float moved = glm::distance(offset_before, offset_after) +
+                      radius_m * turnBetween(before.body.world_from_proxy, after.body.world_from_proxy);
+  const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
+  // Inside the body's sphere nothing can be ruled out.
+  if (distance <= radius_m)
+    return {.half_angle = kHalfTurn_rad, .angle = moved > 0.0f ? kHalfTurn_rad : 0.0f, .drift = drift};
+  return {
+      .half_angle = std::asin(radius_m / distance), .angle = moved / (distance - radius_m), .drift = drift};
+}
+
+float shareOfLight(const BodyChange& change, bool other, int order) {
+  // A body that fills a share of the sphere contributes that share of the light's mean, and up to n times as
+  // much in n bands (|y(d)|² = n²/4pi), but no more than all of it. Moved by an angle, its light differs from
+  // itself by about n/2 times the angle (the parallax of a delta light), up to that of an unrelated light.
+  const auto bands = static_cast<float>(order);
+  constexpr float kOther = std::numbers::sqrt2_v<float>;
+  const float parallax = other ? kOther : std::min(0.5f * bands * change.angle, kOther);
+  const float share = std::min(0.5f * (1.0f - std::cos(change.half_angle)) * bands, 1.0f);
+  return share * (parallax + change.drift);
+}
+
+bool passesLight(std::span<const LightQuery> queries, const glm::vec3& towards, float half_angle) {
+  const float distance = glm::length(towards);
+  return std::ranges::any_of(queries, [&](const LightQuery& query) {
+    const float reach = half_angle + query.angular_radius_rad;
+    return reach >= std::numbers::pi_v<float> || distance == 0.0f ||
+           glm::dot(query.direction, towards) > distance * std::cos(reach);
+  });
+}
 
 Result<IncidentLight> IncidentLight::create(const CaptureOptions& options, const Environment& environment) {
   Result<Capture> capture = Capture::create(options, environment);
@@ -409,15 +456,12 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
   for (const spec::Disc& disc : environment.discs()) {
     std::optional<LightQuery> query;
     if (disc.radiance != glm::vec3(0.0f))
-      query = LightQuery{
-          .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
+      query = LightQuery{.direction = disc.direction, .angular_radius_rad = disc.radius_rad};
     ask(query, drawn.query_of_disc);
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
     std::optional<LightQuery> query;
     if (group.carriers[k].harmonics()) query = queryOf(lights[k], point.position_ws);
-    // The part of the light that is kept apart has no shape to correct in the light without it.
-    if (query) query->radiance *= 1.0f - group.carriers[k].apart();
     ask(query, drawn.query_of_light);
   }
 }

@@ -37,8 +37,6 @@ std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& poin
   if (!(distance > extent) || !std::isfinite(distance)) return std::nullopt;
   LightQuery query{.direction = towards / distance, .distance_m = distance - extent};
   query.angular_radius_rad = std::asin(std::min(1.0f, extent / distance));
-  // The shape of a sphere's visible part is known; the ellipse of a disc light is dimmed as a whole.
-  if (light.kind == LocalLight::Kind::Sphere) query.radiance = light.power;
   return query;
 }
 

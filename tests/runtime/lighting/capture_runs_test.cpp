@@ -142,7 +142,7 @@ CapturedLight CaptureRuns::capturedByRays(const Scene& scene, const CapturePoint
       if (hit.id != 0 && (w <= 0 || hit.distance < w / (1 + capture::kSameDistance))) bits |= 1u << k;
       ++k;
     }
-    out.visible.push_back(capture::visibleShare(query, bits, out.light));
+    out.visible.push_back(capture::visibleShare(query, bits));
   }
   return out;
 }
@@ -253,11 +253,12 @@ TEST_F(CaptureRuns, SeeWhatRaysSeeIn100RandomScenes) {
     }
     for (int i = 0; i < 2; ++i) {
       CapturePoint point{.position_ws = within(3), .own_body = i ? CapturePoint::kNoBody : 0u};
-      for (int q = 0; q < 3; ++q)
+      for (int q = 0; q < 3; ++q) {
         point.queries.push_back({.direction = glm::normalize(within(1)),
                                  .angular_radius_rad = q ? uniform(0, 2) : 0.0f,
-                                 .distance_m = trial % 2 ? uniform(0, 6) : 0.0f,
-                                 .radiance = q ? glm::vec3(uniform(0, 2)) : glm::vec3(0)});
+                                 .distance_m = trial % 2 ? uniform(0, 6) : 0.0f});
+        if (q > 0) random.discard(1);  // keeps the scenes that the tolerances are known for
+      }
       scene.points.push_back(std::move(point));
     }
     const Environment environment = uniformSky(trial % 4 ? 1.0f : 0.0f);
@@ -274,15 +275,8 @@ TEST_F(CaptureRuns, SeeWhatRaysSeeIn100RandomScenes) {
                                   (6.0 * scene.options.size * scene.options.size * scene.options.subsamples *
                                    scene.options.subsamples);
       const double brightest = trial % 10 ? 3 : 1e6;
-      // So may the directions to a disc, each of which moves the light of its share of the disc.
-      double moved = 8 * subsample_sr * brightest;
-      for (std::size_t q = 0; q < expected.visible.size(); ++q) {
-        const LightQuery& query = scene.points[p].queries[q];
-        const double disc_sr = 2 * std::numbers::pi * (1 - std::cos(double{query.angular_radius_rad}));
-        moved += 2 * std::abs(double{light[p].visible[q]} - double{expected.visible[q]}) * disc_sr *
-                 double{glm::length(query.radiance)};
-      }
-      EXPECT_LT(std::sqrt(difference), moved * scene.options.order / std::sqrt(4 * std::numbers::pi))
+      EXPECT_LT(std::sqrt(difference),
+                8 * subsample_sr * brightest * scene.options.order / std::sqrt(4 * std::numbers::pi))
           << "scene " << trial << " point " << p;
       EXPECT_NEAR(light[p].sky_visible.g, expected.sky_visible.g, 2e-3f) << "scene " << trial;
       for (std::size_t q = 0; q < expected.visible.size(); ++q)
