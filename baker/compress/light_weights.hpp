@@ -9,7 +9,7 @@ namespace lambent::baker {
 
 // This is the mean over lights of (sum over m and RGB of l_lm²) / (2l+1), each light divided by its own band
 // 0. If lights are rotated at random, the covariance of their vectors is diagonal with these entries, so they
-// are all that the mean error needs. Made by: light_bands MAPS..., see docs/design/reference.md.
+// are all that the mean error needs. The lights are those of docs/design/reference.md.
 inline constexpr std::array<double, 8> kBandPower = {1.0,    0.5085, 0.3297, 0.2374,
                                                      0.1984, 0.1678, 0.1428, 0.1173};
 
