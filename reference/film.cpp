@@ -133,17 +133,13 @@ void Film::putRow(std::uint32_t y, spec::RgbaImage& image) const {
 }
 
 spec::RgbaImage Film::half(std::size_t replica) const {
-  spec::RgbaImage image{.width = size_.width, .height = size_.height, .texels = {}};
-  image.texels.reserve(pixels_.size());
-  image.depths.reserve(pixels_.size());
+  spec::RgbaImage half = image();
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     // Samples go alternately to the first and the second replica.
     const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
-    image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
-                              static_cast<float>(pixels_[i].alpha));
-    image.depths.push_back(static_cast<float>(pixels_[i].depth));
+    half.texels[i] = glm::vec4(glm::vec3(pixels_[i].replicas[replica] / samples), half.texels[i].a);
   }
-  return image;
+  return half;
 }
 
 std::optional<double> Film::standardError() const {

@@ -16,6 +16,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -207,9 +208,7 @@ std::vector<std::pair<std::string, std::string>> pngChunks(const std::string& fi
 
 TEST_F(SpecImage, PngSaysThatItIsSrgb) {
   ASSERT_TRUE(writePng(folder_ / "picture.png", {2, 1, {1, 2, 3, 4, 5, 6, 7, 8}}));
-  std::ifstream in(folder_ / "picture.png", std::ios::binary);
-  const std::string file{std::istreambuf_iterator<char>(in), {}};
-  const auto chunks = pngChunks(file);
+  const auto chunks = pngChunks(read(folder_ / "picture.png"));
   ASSERT_GE(chunks.size(), 6u);
   EXPECT_EQ(chunks[0].first, "IHDR");
   EXPECT_EQ(chunks[1], std::pair(std::string("sRGB"), std::string(1, '\0'))) << "perceptual";
