@@ -322,10 +322,6 @@ void Cache::checkpointed() {
   state_->checkpoint = now();
 }
 
-const fs::path& Cache::folder() const {
-  return state_->folder;
-}
-
 CacheFigures Cache::figures() const {
   return {.found = state_->found,
           .bytes_read = state_->bytes_read,
