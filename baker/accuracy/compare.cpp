@@ -51,11 +51,13 @@ struct Sums {
   double relativeRms() const { return std::sqrt(std::max(squares, 0.0) / energy); }
 };
 
-}  // namespace
+// Pixels that all pictures cover, and that one covers and that are sky in another.
+struct Pixels {
+  std::vector<std::uint32_t> at, apart;
+};
 
-Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
-                                     const spec::RgbaImage* reference2, const std::string& subject) {
-  const spec::RgbaImage& second = reference2 ? *reference2 : reference;
+Result<PictureError> compare(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                             const spec::RgbaImage& second, const std::string& subject, Pixels& pixels) {
   for (const spec::RgbaImage* other : {&reference, &second})
     if (other->width != picture.width || other->height != picture.height)
       return fail(subject,
@@ -68,12 +70,13 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   glm::dvec3 difference_sum(0.0), reference_sum(0.0);
   std::vector<double> differences;
   const bool depths = haveDepths({&picture, &reference, &second});
-  for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
     const auto [least, most] = std::minmax({picture.texels[i].w, reference.texels[i].w, second.texels[i].w});
     // A pixel of an outline that is just above the bound in one picture and just below in another does not
     // count.
-    error.pixels_apart += most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage;
+    if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage) pixels.apart.push_back(i);
     if (!(least >= spec::kLeastCoverage)) continue;
+    pixels.at.push_back(i);
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
     if (!isFinite(x) || !isFinite(a) || !isFinite(b))
       return fail(
@@ -98,6 +101,7 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
     return fail(subject, "has a black reference", "use a light that reaches the scene");
 
   error.pixels = all.pixels;
+  error.pixels_apart = pixels.apart.size();
   error.relative_rms = all.relativeRms();
   if (depths) error.pixels_of_other_surfaces = all.pixels - same_surface.pixels;
   if (same_surface.energy > 0.0) error.same_surface_rms = same_surface.relativeRms();
@@ -111,6 +115,14 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   error.percentile_99 = percentile(differences, 0.99) / scale;
   error.largest = *std::max_element(differences.begin(), differences.end()) / scale;
   return error;
+}
+
+}  // namespace
+
+Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                     const spec::RgbaImage* reference2, const std::string& subject) {
+  Pixels pixels;
+  return compare(picture, reference, reference2 ? *reference2 : reference, subject, pixels);
 }
 
 Result<spec::RgbaImage> shrunk(const spec::RgbaImage& picture, std::uint32_t n, const std::string& subject) {
@@ -152,38 +164,22 @@ constexpr std::array<Color, 11> kColors = {{{5, 48, 97},
 constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
 constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
 
-struct Pixels {
-  std::vector<float> values;  // values of the map in pixels that all pictures cover
-  std::vector<std::uint32_t> at, apart;
-};
-
-// Counts pixels as comparePictures() does.
-Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const spec::RgbaImage& b) {
-  Pixels out;
-  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
-    const auto [least, most] = std::minmax({picture.texels[i].w, a.texels[i].w, b.texels[i].w});
-    if (least >= spec::kLeastCoverage)
-      out.at.push_back(i);
-    else if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage)
-      out.apart.push_back(i);
-  }
-  return out;
-}
-
-void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaImage& a,
-             const spec::RgbaImage& b) {
+// Returns the values of the map in pixels that all pictures cover.
+std::vector<float> valuesAt(std::span<const std::uint32_t> pixels, const spec::RgbaImage& picture,
+                            const spec::RgbaImage& a, const spec::RgbaImage& b) {
   const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
   double squares = 0.0;
-  for (const std::uint32_t i : pixels.at) {
+  for (const std::uint32_t i : pixels) {
     const double y = double{spec::luminanceOf(mean(i))};
     squares += y * y;
   }
   const auto scale =
-      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.at.size()))), 1e-30f);
-  pixels.values.reserve(pixels.at.size());
-  for (const std::uint32_t i : pixels.at)
-    pixels.values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
-                            std::max(spec::luminanceOf(mean(i)), kFloor * scale));
+      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.size()))), 1e-30f);
+  std::vector<float> values;
+  for (const std::uint32_t i : pixels)
+    values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
+                     std::max(spec::luminanceOf(mean(i)), kFloor * scale));
+  return values;
 }
 
 // Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
@@ -225,16 +221,16 @@ Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::Rgba
                                 const std::string& subject) {
   if (range && !(*range > 0.0 && std::isfinite(*range)))
     return fail("--heat-range", fmt::format("{} is not a range", *range), "give a share above 0, as 0.1");
-  auto figures = comparePictures(picture, reference, reference2, subject);
-  if (!figures) return failAgain(std::move(figures.error()));
   const spec::RgbaImage& second = reference2 ? *reference2 : reference;
-  Pixels pixels = pixelsOf(picture, reference, second);
-  measure(pixels, picture, reference, second);
+  Pixels pixels;
+  auto figures = compare(picture, reference, second, subject, pixels);
+  if (!figures) return failAgain(std::move(figures.error()));
+  const std::vector<float> values = valuesAt(pixels.at, picture, reference, second);
   Difference out{.figures = *figures,
                  .heat = {.width = picture.width,
                           .height = picture.height,
                           .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
-                 .range = range ? *range : rangeOf(pixels.values)};
+                 .range = range ? *range : rangeOf(values)};
   // All pixels share one table, so that colours are interpolated once.
   constexpr int kSteps = 512;
   std::array<Color, kSteps + 1> table;
@@ -244,7 +240,7 @@ Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::Rgba
   for (std::uint32_t i = 0; i < picture.texels.size(); ++i) put(out.heat, i, kUncovered);
   for (const std::uint32_t i : pixels.apart) put(out.heat, i, kApart);
   for (std::size_t p = 0; p < pixels.at.size(); ++p) {
-    const double share = std::clamp(double{pixels.values[p]} / out.range, kLeast, 1.0);
+    const double share = std::clamp(double{values[p]} / out.range, kLeast, 1.0);
     put(out.heat, pixels.at[p],
         table[static_cast<std::size_t>(std::lround((share - kLeast) / (1.0 - kLeast) * kSteps))]);
   }

@@ -56,7 +56,6 @@ class Cache {
   bool checkpointDue() const;
   void checkpointed();
 
-  const std::filesystem::path& folder() const { return state_->folder; }
   CacheFigures figures() const;
   // Says why entries are not kept any more; empty if there is no problem.
   std::string notice() const;

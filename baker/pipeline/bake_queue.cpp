@@ -138,15 +138,15 @@ const char* phaseName(JobPhase phase) {
 
 struct BakeQueue::Impl {
   explicit Impl(QueueSettings given) : settings(std::move(given)) {
-    settings.previews = settings.previews && !settings.work_folder.empty();
-    if (!settings.previews) return;
+    if (settings.work_folder.empty()) return;
     std::error_code failed;
     fs::create_directories(settings.work_folder / kPreviewFolder, failed);
-    if (failed) settings.previews = false;
+    previews = !failed;
     removeOldPreviews(settings.work_folder / kPreviewFolder);
   }
 
   QueueSettings settings;
+  bool previews = false;
 
   mutable std::mutex lock;
   std::condition_variable_any changed;  // wakes the worker
@@ -172,7 +172,7 @@ struct BakeQueue::Impl {
   }
 
   void removePreviews(const Job& job) const {
-    if (!settings.previews) return;
+    if (!previews) return;
     for (const PreviewLevel preview_level : {PreviewLevel::Unshadowed, PreviewLevel::Coarse}) {
       std::error_code ignored;
       fs::remove(placeOf(job, preview_level), ignored);
@@ -190,7 +190,7 @@ struct BakeQueue::Impl {
   }
 
   Step firstStep(const BakeRequest& request) const {
-    if (!settings.previews) return Step::Final;
+    if (!previews) return Step::Final;
     // If a bundle exists, most of what is needed to bake it again is usually in the cache.
     std::error_code ignored;
     return settings.cache != nullptr && fs::exists(request.output, ignored) ? Step::Trial : Step::Unshadowed;

@@ -100,7 +100,6 @@ struct BakeEvent {
 struct QueueSettings {
   std::filesystem::path work_folder;  // for previews; if empty, there are none
   Cache* cache = nullptr;             // must outlive the queue; null: no results are kept
-  bool previews = true;               // makes previews before the final bake
   // Time that a final bake gets before a preview is made instead; with everything in the cache it is enough.
   std::chrono::milliseconds trial{1000};
 };

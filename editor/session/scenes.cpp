@@ -49,8 +49,8 @@ Scenes::Scenes(frame::World& world, Log& log, SceneSettings settings)
     else
       log_.warn(cache.error().line() + "; bakes keep nothing");
   }
-  queue_ = std::make_unique<baker::BakeQueue>(baker::QueueSettings{
-      .work_folder = settings_.cache_folder, .cache = cache_ ? &*cache_ : nullptr, .previews = true});
+  queue_ = std::make_unique<baker::BakeQueue>(
+      baker::QueueSettings{.work_folder = settings_.cache_folder, .cache = cache_ ? &*cache_ : nullptr});
 }
 
 Scenes::~Scenes() {

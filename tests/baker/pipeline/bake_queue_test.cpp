@@ -157,7 +157,7 @@ TEST_F(BakeQueueTest, ACancelledJobStopsAndLeavesTheOldBundle) {
   options.rays = 16384;
   const BakeRequest asked = request("a", options);
   writeBytes(asked.output, "old");
-  BakeQueue queue({.work_folder = folder / "work", .previews = false});
+  BakeQueue queue({});  // without previews
   const JobId job = queue.add(asked);
   ASSERT_TRUE(eventually([&] { return stateOf(queue, job).stage.name == "direct light"; }));
   queue.cancel(job);
