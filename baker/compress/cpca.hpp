@@ -30,8 +30,8 @@ namespace lambent::baker {
 // stated in shaded radiance over such lights and not in raw coefficients, since an error in a band that
 // carries little light matters little. This is the mean over lights of (sum over m and RGB of l_lm²) /
 // (2l+1), each light divided by its own band 0. If lights are rotated at random, the covariance of their
-// vectors is diagonal with these entries, so they are all that the mean error needs.
-// MAPS..., see docs/design/reference.md.
+// vectors is diagonal with these entries, so they are all that the mean error needs. docs/design/reference.md
+// names the lights.
 inline constexpr std::array<double, 8> kBandPower = {1.0,    0.5085, 0.3297, 0.2374,
                                                      0.1984, 0.1678, 0.1428, 0.1173};
 

@@ -279,17 +279,15 @@ std::span<const std::string_view> qualitySettings() {
 }
 
 Result<void> putQuality(FrameSettings& settings, std::string_view name) {
-  FrameSettings of_quality;
-  if (name == "low")
-    of_quality = {.keys = 4, .key_size = 2048, .key_samples = 12};
-  else if (name == "high")
-    of_quality = {.keys = 32, .key_size = 8192, .key_samples = 64};
-  else if (name != "default")
-    return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
-  settings.keys = of_quality.keys;
-  settings.key_size = of_quality.key_size;
-  settings.key_samples = of_quality.key_samples;
-  return {};
+  const auto put = [&](std::optional<std::uint32_t> keys, std::uint32_t size, std::uint32_t samples) {
+    settings.keys = keys, settings.key_size = size, settings.key_samples = samples;
+    return Result<void>();
+  };
+  const FrameSettings plain;
+  if (name == "low") return put(4, 2048, 12);
+  if (name == "default") return put(plain.keys, plain.key_size, plain.key_samples);
+  if (name == "high") return put(32, 8192, 64);
+  return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
 }
 
 Result<FrameSettings> settingsOfQuality(std::string_view name) {
