@@ -138,7 +138,8 @@ class EyeDepth {
   }
   // Gauss-Legendre quadrature with two points is exact for cubics.
   double within(const Segment& segment, double t) const {
-    const double half = 0.5 * (t - segment.begin), centre = segment.begin + half, aside = half / std::sqrt(3.0);
+    const double half = 0.5 * (t - segment.begin), centre = segment.begin + half,
+                 aside = half / std::sqrt(3.0);
     const double middle = 0.5 * (segment.begin + segment.end);
     return half * (extinction(centre - aside, middle) + extinction(centre + aside, middle));
   }

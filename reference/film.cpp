@@ -159,9 +159,10 @@ std::optional<double> Film::standardError() const {
   return std::sqrt(variances / squares);
 }
 
-std::uint32_t samplesInPass(const Options& options, const Volumes& volumes) {
-  if (options.band_limit && options.band_limit->out) return 256;  // each pass integrates its kernels again
-  return volumes.empty() ? 16 : 64;  // in volumes most paths end long before the longest
+std::uint32_t samplesInPass(const World& world) {
+  const auto& limit = world.options.band_limit;
+  if (limit && limit->out) return 256;           // each pass integrates its kernels again
+  return world.scene.volumes.empty() ? 16 : 64;  // in volumes most paths end long before the longest
 }
 
 bool addSamples(const World& world, Film& film, const Rows& rows, std::uint32_t samples, Progress& progress,

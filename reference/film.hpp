@@ -129,7 +129,7 @@ class Film {
 // functions, so that their pictures are equal.
 
 // Returns the number of samples per pixel in one pass.
-std::uint32_t samplesInPass(const Options& options, const Volumes& volumes);
+std::uint32_t samplesInPass(const World& world);
 
 // The number of rows traced between two checks of the clock.
 inline constexpr std::uint32_t kRowsAtOnce = 32;

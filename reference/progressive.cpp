@@ -170,7 +170,7 @@ class ProgressiveReference::Worker {
 
     const World world{*traced_, **environment, shapes, EyeRays(*view, options.size), options};
     Film film(options.size, 0);
-    const std::uint32_t together = samplesInPass(options, traced_->volumes);
+    const std::uint32_t together = samplesInPass(world);
     Clock::time_point shown_at = Clock::now();
     const auto showRows = [&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t y = first; y < last; ++y) film.putRow(y, shown);

@@ -72,13 +72,10 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-struct SampleCounts {
-  std::uint32_t per_pixel, in_pass;
-};
-
 // Renders the picture pass by pass, and writes a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const World& world, Film& film, const SampleCounts& samples,
-                       const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
+Result<void> renderAll(const World& world, Film& film, const fs::path& checkpoint, Progress& progress,
+                       const std::stop_token& stop) {
+  const std::uint32_t samples = world.options.spp, in_pass = samplesInPass(world);
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
   Clock::time_point saved = begin;
@@ -88,11 +85,10 @@ Result<void> renderAll(const World& world, Film& film, const SampleCounts& sampl
     if (checkpoint.empty()) return {};
     return film.save(checkpoint);
   };
-  for (std::uint32_t pass = 0; pass < samples.per_pixel; pass += samples.in_pass)
+  for (std::uint32_t pass = 0; pass < samples; pass += in_pass)
     for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
       const Rows rows{row, std::min(row + kRowsAtOnce, film.size().height)};
-      const bool whole =
-          addSamples(world, film, rows, std::min(samples.per_pixel, pass + samples.in_pass), progress, stop);
+      const bool whole = addSamples(world, film, rows, std::min(samples, pass + in_pass), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
       if (!whole)
@@ -161,8 +157,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   // Trace the paths.
   progress.begin("paths", left, "samples");
   const World world{**traced, **environment, shapes, EyeRays(*view, options.size), options};
-  auto done = renderAll(world, film, {options.spp, samplesInPass(options, (*traced)->volumes)}, checkpoint,
-                        progress, stop);
+  auto done = renderAll(world, film, checkpoint, progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();

@@ -51,11 +51,7 @@ class CachedWindow {
  private:
   LightVector made_from_{.order = 0};
   Window window_ = Window::Off;
-  BandWeights weights_ = [] {
-    BandWeights ones;
-    ones.fill(1.0f);
-    return ones;
-  }();
+  BandWeights weights_ = windowWeights({.order = kMaxOrder}, Window::Off);
 };
 
 }  // namespace lambent::sh
