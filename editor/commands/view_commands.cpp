@@ -241,7 +241,21 @@ void showAbout(Session& session) {
                                      "Bake a glTF scene once, light it any way you like.\n"
                                      "Precomputed radiance transfer: Sloan, Kautz and Snyder, SIGGRAPH 2002.",
                                  .yes = "Close",
-                                 .no = "OK"};
+                                 .no = ""};
+}
+
+void showKeys(Session& session) {
+  std::string text;
+  for (const Command& command : commandList())
+    if (*command.shortcut != '\0') text += fmt::format("{}: {}\n", command.shortcut, command.title);
+  text +=
+      "\nMiddle drag: orbit; also Alt and the left button\nShift+middle: pan\nWheel: nearer, farther\n"
+      "Right drag: look around\nRight+WASDQE: fly; with Shift faster\nRight click: menu of the selection\n"
+      "Click: select; with Ctrl or Shift several\nShift+drag: finer numbers and handles\n"
+      "Ctrl+drag: handles in steps, or freely\nAlt+drag: coarser numbers\n"
+      "Double click in the tree: frame";
+  session.window.dialog =
+      Dialog{.title = "Keys and pointer", .question = std::move(text), .yes = "Close", .no = ""};
 }
 
 Answer listCommands(Session&) {
@@ -276,11 +290,11 @@ std::vector<Command> windowCommands() {
        dockOf(Dock::Bottom, "bottom-panels", "Bottom panels", "Bakes, cost, log"),
        scripted("panel", "Bring a panel up", "NAME", 1, 1,
                 [](Session& session, Words words) { session.window.wanted_panels.push_back(words[0]); })});
-  const std::vector<Command> help = inMenu(
-      "Help", {item("shortcuts", "Keys and pointer", "F1", "All keys, and what the pointer does in the view",
-                    [](Session& session) { session.window.keys = true; }),
-               item("about", "About", "", "Version and origin", showAbout),
-               scripted("commands", "All commands, as JSON", "", 0, 0, listCommands)});
+  const std::vector<Command> help =
+      inMenu("Help", {item("shortcuts", "Keys and pointer", "F1",
+                           "All keys, and what the pointer does in the view", showKeys),
+                      item("about", "About", "", "Version and origin", showAbout),
+                      scripted("commands", "All commands, as JSON", "", 0, 0, listCommands)});
   window.insert(window.end(), help.begin(), help.end());
   return window;
 }

@@ -161,14 +161,15 @@ void drawDialogs(Session& session, Marks& marks) {
   }
   yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(em(7.4f), 0.0f));
   marks.put("dialog.yes");
-  if (!dialog.third.empty()) {
+  const auto button = [&](const std::string& text, const char* mark) {
+    if (text.empty()) return false;
     ImGui::SameLine();
-    third = ImGui::Button(dialog.third.c_str(), ImVec2(em(7.4f), 0.0f));
-    marks.put("dialog.third");
-  }
-  ImGui::SameLine();
-  no = ImGui::Button(dialog.no.c_str(), ImVec2(em(7.4f), 0.0f)) || escapePressed();
-  marks.put("dialog.no");
+    const bool pressed = ImGui::Button(text.c_str(), ImVec2(em(7.4f), 0.0f));
+    marks.put(mark);
+    return pressed;
+  };
+  third = button(dialog.third, "dialog.third");
+  no = button(dialog.no, "dialog.no") || escapePressed();
   if (yes || no || third) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (!yes && !no && !third) return;

@@ -136,8 +136,7 @@ void drawKeyLights(Session& session, Marks& marks) {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Suns, lamps and windows that were found in the light from outside, and shine by shadow maps.\n"
-        "Share: of all light. With the environment selected, those of environment maps have handles on the "
-        "sky, too.");
+        "Share: of all light.");
   if (!open) return;
   const std::vector<KeyLight> keys = keyLightsOf(session);
   if (keys.empty()) return ImGui::TextDisabled("None: all light from outside is soft.");

@@ -139,7 +139,7 @@ std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, co
   ImGui::EndGroup();
   if (!changed) return std::nullopt;
   std::vector<Value> after;
-  session.angles.clear();
+  if (row.field.kind == scene::ValueKind::Rotation) session.angles.clear();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     after.push_back(valueOf(session, row.field, row.entities[i], numbers[i]));
     if (const auto* rotation = std::get_if<glm::quat>(&after.back()))

@@ -197,7 +197,6 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   if (has_bottom) drawDock(session, marks, Dock::Bottom, bottom_area);
   session.window.raise_tabs = false;
   drawDialogs(session, marks);
-  drawKeys(session, marks);
 }
 
 }  // namespace lambent::editor

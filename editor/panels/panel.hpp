@@ -52,7 +52,6 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToolBar(Session& session, Marks& marks);    // above the view
 void drawStartPage(Session& session, Marks& marks);  // in the view while the world is empty
 void drawDialogs(Session& session, Marks& marks);
-void drawKeys(Session& session, Marks& marks);
 // Draws the items of a menu about what is selected, for rows of the tree and the view.
 void drawSelectionMenu(Session& session, Marks& marks);
 

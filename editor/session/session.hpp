@@ -19,7 +19,6 @@
 #include "editor/document/tree.hpp"
 #include "editor/gizmo/gizmo.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/key_lights.hpp"
@@ -95,7 +94,7 @@ struct Dialog {
   std::vector<std::string> endings{};              // of the files to list; empty: all files
   std::filesystem::path folder{};                  // the folder that is shown
   std::string name{};                              // the text typed so far
-  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty third one has no button
+  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty one has no button
   std::function<void(Session&, const std::string& answer)> answered{};
   std::function<void(Session&)> third_chosen{};
 
@@ -114,7 +113,6 @@ struct WindowRequests {
   bool raise_tabs = true;                  // also bring the preferences' tabs to the front
   // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
   std::vector<std::string> wanted_commands;
-  bool keys = false;  // the list of keys is open
   bool quit = false;
   std::uint64_t frames = 0;  // how many the window has drawn
 };
@@ -130,14 +128,12 @@ struct SessionOptions {
   baker::Quality quality = baker::Quality::Standard;
 };
 
-// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection,
-// and drag suns. editor/panels/viewport.cpp drives them.
+// Holds the state of the handles that move, turn and scale the selection between frames.
+// editor/panels/viewport.cpp drives them.
 struct Handles {
   bool shown = true;
   Gizmo gizmo;
-  SunGizmo sun_gizmo;
   FinePointer pointer;
-  std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
 };
 
 // Holds whether the world's animations are playing, and their time.
