@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/frame/frame_parts.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
