@@ -95,6 +95,10 @@ bundle::LampSphere sphereOf(const Emitter& emitter, const std::vector<std::size_
           .body_radius_m = static_cast<float>(std::max(radius, farthest))};
 }
 
+bool isLit(glm::vec3 color) {
+  return color.r > 0.0f || color.g > 0.0f || color.b > 0.0f;
+}
+
 using Cell = glm::vec<3, std::int64_t>;
 struct CellHash {
   std::size_t operator()(const Cell& cell) const {
@@ -157,14 +161,6 @@ std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   }
   return -1;
 }
-
-namespace {
-
-bool isLit(glm::vec3 color) {
-  return color.r > 0.0f || color.g > 0.0f || color.b > 0.0f;
-}
-
-}  // namespace
 
 std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group) {
   std::vector<PlannedLight> lights;

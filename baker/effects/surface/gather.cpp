@@ -282,19 +282,24 @@ bool GlossyPasses::gatherAt(const DirectPass& pass, const DirectResult& direct, 
       .has_value();
 }
 
-bool GlossyPasses::fitInside(const Bounce& bounce, const BakeContext& context) {
-  const InsideFaces& inside = *light_.inside(SurfacePart::Glossy);
-  const TracedPoints& points = inside.points();
-  context.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
-  GlossyLight there;
-  const auto fit = [&](const GlossyMatrices& from, GlossyMatrices& to) {
-    return inside.fit(SampleKind::Glossy, from.values, to.values, context.stop);
-  };
-  return gatherAt(points.pass(), points.direct, bounce, there, context) &&
-         fit(there.environment, now_.environment) && fit(there.lights, now_.lights);
-}
-
-bool GlossyPasses::watch(const Bounce& bounce, const BakeContext& context) const {
+bool GlossyPasses::gather(const Bounce& bounce, const SampleEdges& edges, TransferField& now,
+                          const BakeContext& context) {
+  if (!gatherAt(light_.pass, light_.direct, bounce, now_, context)) return false;
+  for (GlossyMatrices* const part : {&now_.environment, &now_.lights})
+    if (!edges.empty())
+      fillFromNeighbours(edges, light_.direct.looks.valid, exit_.first_sample, part->sampleSize(),
+                         part->values);
+  if (const InsideFaces* const inside = light_.inside(SurfacePart::Glossy)) {
+    const TracedPoints& points = inside->points();
+    context.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
+    GlossyLight there;
+    const auto fit = [&](const GlossyMatrices& from, GlossyMatrices& to) {
+      return inside->fit(SampleKind::Glossy, from.values, to.values, context.stop);
+    };
+    if (!gatherAt(points.pass(), points.direct, bounce, there, context.part("inside faces")) ||
+        !fit(there.environment, now_.environment) || !fit(there.lights, now_.lights))
+      return false;
+  }
   for (TracedPoints* const points : light_.watched) {
     if (points->points().samples.glossy.empty()) continue;
     GlossyLight there;
@@ -303,18 +308,6 @@ bool GlossyPasses::watch(const Bounce& bounce, const BakeContext& context) const
     sum.resize(there.environment.values.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += there.environment.values[i];
   }
-  return true;
-}
-
-bool GlossyPasses::gather(const Bounce& bounce, const SampleEdges& edges, TransferField& now,
-                          const BakeContext& context) {
-  if (!gatherAt(light_.pass, light_.direct, bounce, now_, context)) return false;
-  for (GlossyMatrices* const part : {&now_.environment, &now_.lights})
-    if (!edges.empty())
-      fillFromNeighbours(edges, light_.direct.looks.valid, exit_.first_sample, part->sampleSize(),
-                         part->values);
-  if (light_.inside(SurfacePart::Glossy) && !fitInside(bounce, context.part("inside faces"))) return false;
-  if (!watch(bounce, context)) return false;
   if (sum_.environment.values.empty()) sum_ = zero(order_out_, count_);
   return take(now_, &now, context.stop);
 }

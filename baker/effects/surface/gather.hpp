@@ -65,8 +65,9 @@ class GlossyPasses {
   GlossyPasses(const LightToBounce& light, int order_out);
 
   const GlossyExit& exit() const { return exit_; }
-  // Gathers one pass, fills and fits it. `now` is the diffuse transfer of all samples; this sets it at glossy
-  // ones. The key of the context is that of this pass. Returns false if stopped.
+  // Gathers one pass, fills and fits it, and adds what it brings to watched points. `now` is the diffuse
+  // transfer of all samples; this sets it at glossy ones. The key of the context is that of this pass.
+  // Returns false if stopped.
   bool gather(const Bounce& bounce, const SampleEdges& edges, TransferField& now, const BakeContext& context);
   // Makes what was gathered last the input of the next pass.
   void advance();
@@ -79,8 +80,6 @@ class GlossyPasses {
   // Computes what the pass adds at all glossy samples of a set, which is 0 where these see nothing.
   bool gatherAt(const DirectPass& pass, const DirectResult& direct, const Bounce& bounce, GlossyLight& now,
                 const BakeContext& context) const;
-  bool fitInside(const Bounce& bounce, const BakeContext& context);
-  bool watch(const Bounce& bounce, const BakeContext& context) const;
   // Computes the energies of `state`; if `plain` is not null, also writes diffuse transfer into it and adds
   // the state to the sum. Returns false if stopped.
   bool take(const GlossyLight& state, TransferField* plain, const std::stop_token& stop);

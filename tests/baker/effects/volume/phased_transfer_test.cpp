@@ -80,23 +80,6 @@ TEST(PhasedTransfer, OfAThinMediumIsOneScatteringByItsPhase) {
   }
 }
 
-TEST(PhasedTransfer, IsTheIsotropicOneAsGGoesToZero) {
-  for (const float sigma : {1.0f, 4.0f, 16.0f}) {
-    const Fog fog = cube(sigma);
-    const VolumeTransfer even = phased(fog, gridOf(11, 2), 0.0f, 0.9f),
-                         nearly = phased(fog, gridOf(11, 2), 1e-5f, 0.9f);
-    ASSERT_EQ(even.outputs(), 1u);
-    ASSERT_EQ(nearly.outputs(), 9u);
-    double worst = 0.0;
-    for (std::size_t p = 0; p < even.grid.samples(); ++p)
-      for (std::size_t block = 0; block < 2; ++block)
-        for (std::size_t c = 0; c < 4; ++c)
-          worst = testing::larger(worst, std::abs(double{even.vectors[p * 8 + block * 4 + c]} * kRoot4Pi -
-                                                  double{nearly.vectors[p * 72 + block * 36 + c]}));
-    EXPECT_LT(worst, 0.012) << sigma;
-  }
-}
-
 // Estimates what arrives at a place by random walks with delta tracking, backwards: coefficients for uniform
 // light and for y_10, [output][2].
 std::vector<std::array<double, 2>> walkedWithPhase(const DensityField& density, float largest,
