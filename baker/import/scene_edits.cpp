@@ -226,7 +226,9 @@ void joinScene(Scene from, const std::string& name, const glm::mat4& world_from_
   for (NeighborhoodRequest& request : added(to.neighborhoods, neighborhoods)) request.node += first_node;
 
   const auto root = static_cast<std::int32_t>(to.nodes.size());
-  gltf::Node place{.name = name, .parent_from_node = world_from_scene};
+  gltf::Node place;
+  place.name = name;
+  place.parent_from_node = world_from_scene;
   for (const std::int32_t child : from.roots) {
     place.children.push_back(child + nodes);
     to.nodes[static_cast<std::size_t>(child + nodes)].parent = root;
