@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include <glm/common.hpp>
@@ -14,6 +15,22 @@
 
 namespace lambent::assets {
 
+glm::dvec3 integrate(const spec::RgbImage& image) {
+  const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+  glm::dvec3 sum(0.0);
+  for (int y = 0; y < height; ++y) {
+    glm::dvec3 row(0.0);
+    for (int x = 0; x < width; ++x)
+      row +=
+          glm::dvec3(image.texels[static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x)]);
+    sum += row * sh::texelSolidAngle(sh::ImageLayout::LatLong, width, height, 0, y);
+  }
+  return sum;
+}
+
+namespace {
+
+// Makes an image of width x width / 2 texels, each the mean of samples x samples directions.
 spec::RgbImage latLongImage(std::uint32_t width, int samples,
                             const std::function<glm::dvec3(glm::dvec3 dir)>& radiance) {
   spec::RgbImage image{width, width / 2, {}};
@@ -30,30 +47,19 @@ spec::RgbImage latLongImage(std::uint32_t width, int samples,
   return image;
 }
 
-glm::dvec3 integrate(const spec::RgbImage& image) {
-  const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-  glm::dvec3 sum(0.0);
-  for (int y = 0; y < height; ++y) {
-    glm::dvec3 row(0.0);
-    for (int x = 0; x < width; ++x)
-      row +=
-          glm::dvec3(image.texels[static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x)]);
-    sum += row * sh::texelSolidAngle(sh::ImageLayout::LatLong, width, height, 0, y);
-  }
-  return sum;
+double luminance(glm::dvec3 colour) {
+  return glm::dot(colour, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
+// Scales the image to a mean luminance of 1.
 void normalise(spec::RgbImage& image) {
-  const glm::dvec3 rec709(0.2126, 0.7152, 0.0722);
-  const double mean = glm::dot(integrate(image), rec709) / (4 * std::numbers::pi);
+  const double mean = luminance(integrate(image)) / (4 * std::numbers::pi);
   for (glm::vec3& texel : image.texels) texel *= static_cast<float>(1.0 / mean);
 }
 
 // Makes a clear sky after A. J. Preetham, P. Shirley and B. Smits, "A Practical Analytic Model for Daylight",
 // SIGGRAPH 1999, appendix A.2: Perez' distribution for luminance Y and chromaticities x and y, whose
 // coefficients are linear in the turbidity.
-
-namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTurbidity = 3.0;  // clear, a little hazy
@@ -140,10 +146,6 @@ glm::dvec3 irradianceFromAbove(const spec::RgbImage& image) {
       weighted.texels[y * image.width + x] *= static_cast<float>(std::max(up, 0.0));
   }
   return integrate(weighted);
-}
-
-double luminance(glm::dvec3 colour) {
-  return glm::dot(colour, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
 }  // namespace

@@ -83,8 +83,8 @@ void addAlike(const GroupDecisions& of, PlanLines& lines) {
     std::size_t draws;
   };
   std::vector<Alike> all;
-  for (const PrimitiveDecisions& primitive : of.primitives)
-    for (const Decision& d : primitive.decisions) {
+  for (const std::vector<Decision>& primitive : of.primitives)
+    for (const Decision& d : primitive) {
       if (d.choice == Choice::Absent) continue;
       auto alike = std::ranges::find_if(all, [&](const Alike& known) {
         return known.first->effect == d.effect && known.first->choice == d.choice;
@@ -178,15 +178,15 @@ nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
 
 nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const GroupDecisions& of) {
   nlohmann::json json = nlohmann::json::array();
-  for (const PrimitiveDecisions& primitive : of.primitives) {
-    const PlannedDraw& draw = group.draws[primitive.draw];
+  for (std::size_t d = 0; d < of.primitives.size(); ++d) {
+    const PlannedDraw& draw = group.draws[d];
     json.push_back(
         {{"node", scene.nodes[draw.node].name},
          {"mesh", scene.meshes[draw.mesh].name},
          {"primitive", draw.primitive},
          {"side", draw.back ? "back" : "front"},
          {"material", materialName(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material)},
-         {"decisions", decisionsJson(primitive.decisions)}});
+         {"decisions", decisionsJson(of.primitives[d])}});
   }
   return json;
 }

@@ -184,7 +184,7 @@ std::vector<GroupDecisions> decisionsOf(const Decided& decided) {
     GroupDecisions& of = all.emplace_back();
     of.decisions = groupDecisions(decided, g);
     for (std::size_t d = 0; d < decided.plan.groups[g].draws.size(); ++d)
-      of.primitives.push_back({d, primitiveDecisions(decided, g, d)});
+      of.primitives.push_back(primitiveDecisions(decided, g, d));
   }
   return all;
 }

@@ -25,14 +25,9 @@ struct Decision {
   std::string reason = {};  // one sentence with its number
 };
 
-struct PrimitiveDecisions {
-  std::size_t draw = 0;  // in the group
-  std::vector<Decision> decisions;
-};
-
 struct GroupDecisions {
   std::vector<Decision> decisions;
-  std::vector<PrimitiveDecisions> primitives;
+  std::vector<std::vector<Decision>> primitives;  // by draw of the group
 };
 
 // A Decided is what the decisions are about.

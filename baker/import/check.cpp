@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "baker/import/texture_transfer.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker {
@@ -184,7 +183,6 @@ void checkPrimitive(const Entry& primitive) {
   primitive.object("attributes")->indexAll("accessors");  // which mends have made an object
   const auto indices = primitive.index("indices", "accessors");
   primitive.index("material", "materials");
-  checkTextureTransfer(primitive.json, primitive.name);
   if (primitive.number("mode").value_or(4) > 6) refuse("{} has an unknown mode", primitive.name);
   const auto draco = primitive.extension("KHR_draco_mesh_compression");
   if (draco) checkDraco(*draco);
@@ -200,7 +198,6 @@ void checkPrimitive(const Entry& primitive) {
 
 void checkMesh(const Entry& mesh) {
   mesh.numbers("weights");
-  checkTextureTransfer(mesh.json, mesh.name);
   mesh.forEach("primitives", mesh.name + ", primitive", checkPrimitive);
 }
 
@@ -209,53 +206,6 @@ void checkNodeNumbers(const Entry& owner, const char* key) {
   for (const json& entry : owner.list(key))
     if (owner.toNumber(entry, key) >= size)
       refuse("{}: node {} does not exist (there are {})", owner.name, entry.dump(), size);
-}
-
-// Requires a number, or a list of three, between two others.
-void checkBetween(const Entry& object, const char* key, double least, double most, bool list) {
-  const json* value = object.find(key);
-  if (value == nullptr) return;
-  if (list) object.numbers(key, 3);
-  for (const json& number : list ? *value : json::array({*value}))
-    if (!number.is_number() || !(number.get<double>() >= least && number.get<double>() <= most))
-      throw Error{
-          {},
-          fmt::format("{}: {} is {}, not between {} and {}", object.name, key, value->dump(), least, most),
-          "correct it"};
-}
-
-constexpr double kLargestNumber = 1e12, kSmallestNumber = 1e-12;
-
-void checkVolume(const Entry& volume) {
-  if (volume.text("file").empty())
-    throw Error{
-        {}, fmt::format("{} names no file", volume.name), "name a .vdb or .nrrd file beside the scene"};
-  volume.text("grid");
-  checkBetween(volume, "density_scale", 0.0, kLargestNumber, /*list=*/false);
-  checkBetween(volume, "albedo", 0.0, 1.0, /*list=*/true);
-  checkBetween(volume, "g", -0.99, 0.99, /*list=*/false);
-  checkBetween(volume, "size", kSmallestNumber, kLargestNumber, /*list=*/true);
-}
-
-void checkNeighborhood(const Entry& request) {
-  constexpr double kMostPoints = 256;
-  for (const json& entry : request.list("size")) request.toNumber(entry, "size");
-  checkBetween(request, "size", 2, kMostPoints, /*list=*/true);
-  checkBetween(request, "extent", kSmallestNumber, kLargestNumber, /*list=*/true);
-}
-
-// Checks extras.lambent.volume and extras.lambent.neighborhood (docs/authoring.md).
-void checkGrids(const Entry& node) {
-  const auto ours = node.ours();
-  if (!ours) return;
-  const auto check = [&](const char* key, void (*check_grid)(const Entry&)) {
-    const json* grid = ours->find(key);
-    if (grid == nullptr) return;
-    if (!grid->is_object()) refuse("{}: {} is not an object", ours->name, key);
-    check_grid(*ours->object(key));
-  };
-  check("volume", checkVolume);
-  check("neighborhood", checkNeighborhood);
 }
 
 void checkNode(const Entry& node) {
@@ -278,7 +228,6 @@ void checkNode(const Entry& node) {
     if (!attributes) refuse("{} has no attributes", instances->name);
     attributes->indexAll("accessors");
   }
-  checkGrids(node);
 }
 
 void checkAnimation(const Entry& animation) {
@@ -315,7 +264,7 @@ std::uint64_t elementBytes(const std::string& type, std::uint64_t component) {
 
 // Returns the object of a list that the owner must name.
 Entry named(const Entry& owner, const char* key, const char* list) {
-  const auto i = owner.index(key, list);
+  const auto i = owner.below(key, memberOf(owner.document.json, {list}).size(), list);
   if (!i) refuse("{} has no {}", owner.name, key);
   return {owner.document.json[list][*i], fmt::format("{} {}", key, *i), owner.document};
 }
@@ -333,6 +282,7 @@ void checkExtent(const Entry& object, std::uint64_t count, std::uint64_t element
                     (count - 1) <= (available - offset - element) / stride;
   if (!fits)
     refuse("{}: {} elements do not fit the {} bytes of {}", object.name, count, available, view.name);
+  object.index("bufferView", "bufferViews");  // as used
 }
 
 void checkSparse(const Entry& sparse, std::uint64_t count, std::uint64_t element) {

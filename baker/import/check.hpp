@@ -60,8 +60,6 @@ struct Entry {
   // Returns a member that is an object; another one is left out.
   std::optional<Entry> object(const char* key) const;
   std::optional<Entry> extension(const char* key) const;
-  // Returns what stands under our own name in `extras`, which may hold anything else.
-  std::optional<Entry> ours() const;
   // Clamps a number, and leaves out what is no finite number.
   void clamp(const char* key, double least, double most) const;
   // Clamps a list of `count` numbers, and leaves out what is no such list.

@@ -78,9 +78,6 @@ void convertGrids(const Document& document, const NodeMap& map, Scene& scene);
 // traced.
 void placeNearOrigin(NodeMap map, Scene& scene);
 
-// Warns about a body around all others that keeps light from outside away, such as a sky dome.
-void warnAboutDomes(Scene& scene);
-
 // Removes non-finite and degenerate triangles and unused vertices, makes flat normals where there are no
 // usable ones, and makes normals and tangents unit. Warnings begin with `name`.
 void cleanMesh(bundle::MeshData& mesh, const std::string& name, std::vector<std::string>& warnings);

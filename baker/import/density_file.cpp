@@ -11,10 +11,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <span>
+#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -34,16 +35,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && space(text.front())) text.remove_prefix(1);
   while (!text.empty() && space(text.back())) text.remove_suffix(1);
   return text;
-}
-
-std::vector<std::string_view> wordsOf(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
-    words.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return words;
 }
 
 template <typename Number>
@@ -72,69 +63,55 @@ glm::dvec3 vectorOf(std::string_view text, const char* field) {
   return vector;
 }
 
-class Header {
- public:
-  // Takes the header off the front of the file.
-  explicit Header(std::span<const std::byte> file) {
-    const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-    if (!text.starts_with("NRRD000"))
-      throw Error{{}, "does not begin like an NRRD file", "name a .nrrd file"};
-    for (bool first = true;; first = false) {
-      const std::size_t end = text.find('\n', size_);
-      if (end == std::string_view::npos) refuse("ends within its header");
-      const std::string_view line = trimmed(text.substr(size_, end - size_));
-      size_ = end + 1;
-      if (line.empty()) return;
-      if (!first) add(line);
-    }
-  }
+using Fields = std::map<std::string, std::string>;
 
-  std::size_t size() const { return size_; }
-  std::optional<std::string_view> find(const std::string& name) const {
-    const auto it = fields_.find(name);
-    if (it == fields_.end()) return std::nullopt;
-    return it->second;
-  }
-  std::string_view required(const std::string& name) const {
-    const auto value = find(name);
-    if (!value) refuse("its header has no field \"{}\"", name);
-    return *value;
-  }
-
- private:
-  void add(std::string_view line) {
-    if (line.starts_with('#') || line.find(":=") != std::string_view::npos)
-      return;  // comments, and keys of other programs
+// Takes the header off the front of the file.
+Fields takeHeader(std::string_view& file) {
+  if (!file.starts_with("NRRD000")) throw Error{{}, "does not begin like an NRRD file", "name a .nrrd file"};
+  Fields fields;
+  for (bool first = true;; first = false) {
+    const std::size_t end = file.find('\n');
+    if (end == std::string_view::npos) refuse("ends within its header");
+    const std::string_view line = trimmed(file.substr(0, end));
+    file.remove_prefix(end + 1);
+    if (line.empty()) return fields;
+    if (first || line.starts_with('#') || line.find(":=") != std::string_view::npos)
+      continue;  // comments, and keys of other programs
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos) refuse("its header has the line \"{}\"", line.substr(0, 60));
-    if (!fields_.try_emplace(std::string(line.substr(0, colon)), trimmed(line.substr(colon + 1))).second)
+    if (!fields.try_emplace(std::string(line.substr(0, colon)), trimmed(line.substr(colon + 1))).second)
       refuse("its header has the field \"{}\" twice", line.substr(0, colon));
   }
+}
 
-  std::size_t size_ = 0;
-  std::map<std::string, std::string> fields_;
-};
+const std::string& required(const Fields& fields, const char* name) {
+  const auto found = fields.find(name);
+  if (found == fields.end()) refuse("its header has no field \"{}\"", name);
+  return found->second;
+}
 
 // Returns the three words of a field.
-std::vector<std::string_view> triple(std::string_view value, const char* field) {
-  auto words = wordsOf(value);
-  if (words.size() != 3) refuse("its field \"{}\" is not of three parts", field);
+std::vector<std::string> triple(const Fields& fields, const char* name) {
+  std::istringstream in(required(fields, name));
+  std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
+  if (words.size() != 3) refuse("its field \"{}\" is not of three parts", name);
   return words;
 }
 
 // Returns file_from_grid: the first voxel's centre, (1/2, 1/2, 1/2), lies at "space origin".
-glm::dmat4 fileFromGrid(const Header& header) {
+glm::dmat4 fileFromGrid(const Fields& fields) {
+  constexpr const char *kDirections = "space directions", *kSpacings = "spacings", *kOrigin = "space origin";
   glm::dmat4 matrix(1.0);
-  if (const auto directions = header.find("space directions")) {
-    for (int axis = 0; const std::string_view word : triple(*directions, "space directions"))
-      matrix[axis++] = glm::dvec4(vectorOf(word, "space directions"), 0.0);
-  } else if (const auto spacings = header.find("spacings")) {
-    for (int axis = 0; const std::string_view word : triple(*spacings, "spacings"))
-      matrix[axis][axis] = numberOf<double>(word, "spacings"), ++axis;
-  }
+  int axis = 0;
+  if (fields.contains(kDirections))
+    for (const std::string& word : triple(fields, kDirections))
+      matrix[axis++] = glm::dvec4(vectorOf(word, kDirections), 0.0);
+  else if (fields.contains(kSpacings))
+    for (const std::string& word : triple(fields, kSpacings))
+      matrix[axis][axis] = numberOf<double>(word, kSpacings), ++axis;
   const glm::dvec4 half = 0.5 * (matrix[0] + matrix[1] + matrix[2]);
-  const auto origin = header.find("space origin");
-  const glm::dvec3 first = origin ? vectorOf(*origin, "space origin") : glm::dvec3(half);
+  const glm::dvec3 first =
+      fields.contains(kOrigin) ? vectorOf(fields.at(kOrigin), kOrigin) : glm::dvec3(half);
   matrix[3] = glm::dvec4(first - glm::dvec3(half), 1.0);
   if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 0.0)) refuse("is flat by its own placement");
   return matrix;
@@ -179,42 +156,42 @@ ValueType typeOf(std::string_view name) {
       {}, fmt::format("has values of the type \"{}\"", name), "save it as float, double, uchar or ushort"};
 }
 
-DensityGrid readValues(std::span<const std::byte> file, const std::string& subject) {
-  const Header header(file);
-  if (numberOf<std::uint32_t>(header.required("dimension"), "dimension") != 3)
-    refuse("has {} dimensions, not 3", header.required("dimension"));
+DensityGrid readValues(std::string_view file, const std::string& subject) {
+  const Fields fields = takeHeader(file);
+  if (numberOf<std::uint32_t>(required(fields, "dimension"), "dimension") != 3)
+    refuse("has {} dimensions, not 3", required(fields, "dimension"));
   for (const char* elsewhere : {"data file", "datafile", "line skip", "lineskip", "byte skip", "byteskip"})
-    if (header.find(elsewhere))
+    if (fields.contains(elsewhere))
       refuse("has the field \"{}\": only values that follow the header are read", elsewhere);
-  if (header.required("encoding") != "raw") refuse("has the encoding \"{}\"", header.required("encoding"));
-  const ValueType type = typeOf(header.required("type"));
+  if (required(fields, "encoding") != "raw") refuse("has the encoding \"{}\"", fields.at("encoding"));
+  const ValueType type = typeOf(required(fields, "type"));
   bool swapped = false;
   if (type.width > 1) {
-    const std::string_view endian = header.required("endian");
+    const std::string& endian = required(fields, "endian");
     if (endian != "little" && endian != "big") refuse("has the byte order \"{}\"", endian);
     swapped = (endian == "little") != (std::endian::native == std::endian::little);
   }
   glm::u64vec3 size;
-  for (int axis = 0; const std::string_view word : triple(header.required("sizes"), "sizes"))
+  for (int axis = 0; const std::string& word : triple(fields, "sizes"))
     size[axis++] = numberOf<std::uint32_t>(word, "sizes");
   orThrow(checkGridSize(size, subject));
 
-  const std::uint64_t wanted = size.x * size.y * size.z * type.width, there = file.size() - header.size();
-  if (there != wanted)
+  const std::uint64_t wanted = size.x * size.y * size.z * type.width;
+  if (file.size() != wanted)
     throw Error{{},
-                fmt::format("has {} bytes of values where its sizes ask for {}", there, wanted),
+                fmt::format("has {} bytes of values where its sizes ask for {}", file.size(), wanted),
                 "take it from its source again"};
   return {.name = {},
           .size = glm::uvec3(size),
-          .values = type.values(file.subspan(header.size()), swapped),
-          .file_from_grid = fileFromGrid(header)};
+          .values = type.values(std::as_bytes(std::span(file)), swapped),
+          .file_from_grid = fileFromGrid(fields)};
 }
 
 }  // namespace
 
 Result<DensityGrid> readNrrd(const std::filesystem::path& file) {
   return resultOf(file.string(), "read", "save it as NRRD of three dimensions with raw encoding",
-                  [&] { return readValues(readBytes(file, file.string()), file.string()); });
+                  [&] { return readValues(orThrow(readTextFile(file)), file.string()); });
 }
 
 namespace {

@@ -223,7 +223,8 @@ class MaterialConverter {
   // readMeasuredBrdf, with the material's number.
   void bindMeasured(const json& source, gltf::Material& material) {
     const json& name = memberOf(source, {"extras", "lambent", "brdf"});
-    if (!name.is_string()) return;
+    if (name.is_null()) return;
+    if (!name.is_string()) refuse("material {}: extras: lambent: brdf is not a string", number_);
     const std::string object = fmt::format("the BRDF of material {}", number_);
     const auto file =
         resolveUri(document_.path, name.get<std::string>(), document_.options, object, scene_.warnings);

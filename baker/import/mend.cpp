@@ -110,11 +110,6 @@ std::optional<Entry> Entry::extension(const char* key) const {
   return extensions ? extensions->object(key) : std::nullopt;
 }
 
-std::optional<Entry> Entry::ours() const {
-  if (!memberOf(json, {"extras", "lambent"}).is_object()) return std::nullopt;
-  return Entry{json["extras"]["lambent"], name + ": extras: lambent", document};
-}
-
 void Entry::clamp(const char* key, double least, double most) const {
   nlohmann::json* value = find(key);
   if (value == nullptr) return;

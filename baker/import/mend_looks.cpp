@@ -159,7 +159,6 @@ void mendMaterials(const Entry& root) {
     mendAlphaMode(material);
     mendFlag(material, "doubleSided");
     material.json.erase("occlusionTexture");  // nothing reads it
-    if (const auto ours = material.ours()) ours->text("brdf");
   });
 }
 

@@ -149,7 +149,7 @@ class MeshConverter {
                     "import it in parts"};
       if (data.indices.empty()) continue;
       mesh.primitives.push_back({.mesh = std::move(data), .material = material});
-      if (const std::uint32_t texels = textureTransferOf(source, primitive); texels > 0)
+      if (const std::uint32_t texels = textureTransferOf(source, primitive, name); texels > 0)
         giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
     separateDetails(mesh);

@@ -15,11 +15,10 @@ namespace lambent::baker {
 // The texture is a square of so many texels; a power of two.
 inline constexpr std::uint32_t kLeastTexels = 16, kMostTexels = 2048;
 
-// Throws an Error if the mesh or primitive asks for anything else.
-void checkTextureTransfer(const nlohmann::json& owner, const std::string& name);
-// Returns the texels along a side that the primitive asks for, else its mesh; 0 if neither does. Both were
-// checked.
-std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive);
+// Returns the texels along a side that the primitive asks for, else its mesh; 0 if neither does. Throws an
+// Error about `name`, the primitive, if it asks for anything else.
+std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive,
+                                const std::string& name);
 
 // Returns what is wrong with a set of texture coordinates as places of transfer, seen at `texels` texels
 // along a side, or an empty string if nothing is: coordinates outside 0 to 1, a triangle without area in the

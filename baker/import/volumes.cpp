@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -16,6 +17,35 @@ namespace lambent::baker {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kLargestNumber = 1e12, kSmallestNumber = 1e-12;
+
+// Reads a number, or three of them, if they are there. Errors name `object`: they are not within the limits.
+template <typename T>
+void readWithin(const json& source, const char* key, double least, double most, const std::string& object,
+                T& field) {
+  const json& value = memberOf(source, {key});
+  if (value.is_null()) return;
+  constexpr bool kList = requires {
+    T::length();
+  };
+  const auto good = [&](const json& number) {
+    const bool kind = std::is_same_v<T, glm::uvec3> ? number.is_number_unsigned() : number.is_number();
+    return kind && number.get<double>() >= least && number.get<double>() <= most;
+  };
+  if (kList ? !value.is_array() || value.size() != 3 || !std::ranges::all_of(value, good) : !good(value))
+    throw Error{{},
+                fmt::format("{}: {} is {}, not {} between {} and {}", object, key, value.dump(),
+                            kList ? "three numbers" : "a number", least, most),
+                "correct it"};
+  readMember(source, key, field);
+}
+
+std::string textOf(const json& source, const char* key, const std::string& object) {
+  const json& value = memberOf(source, {key});
+  if (!value.is_null() && !value.is_string()) refuse("{}: {} is not a string", object, key);
+  return value.is_null() ? std::string() : value.get<std::string>();
+}
 
 // Makes a grid from words such as "procedural:cloud,7".
 DensityGrid procedural(const std::string& words, const std::string& subject) {
@@ -60,27 +90,31 @@ std::size_t scaleDensities(std::vector<float>& values, float scale) {
 
 void addVolume(const Document& document, const json& source, std::uint32_t node, const std::string& object,
                Scene& scene) {
-  const auto uri = source["file"].get<std::string>();
-  DensityGrid densities = readGrid(document, uri, source.value("grid", ""), object, scene.warnings);
-
+  if (!source.is_object()) refuse("{} is not an object", object);
+  const std::string uri = textOf(source, "file", object), name = textOf(source, "grid", object);
+  if (uri.empty()) throw Error{{}, object + " names no file", "name a .vdb or .nrrd file beside the scene"};
   SceneVolume volume;
+  volume.node = node;
+  float scale = 1.0f;
+  glm::dvec3 size(0.0);
+  readWithin(source, "density_scale", 0.0, kLargestNumber, object, scale);
+  readWithin(source, "albedo", 0.0, 1.0, object, volume.albedo);
+  readWithin(source, "g", -0.99, 0.99, object, volume.g);
+  readWithin(source, "size", kSmallestNumber, kLargestNumber, object, size);
+
+  DensityGrid densities = readGrid(document, uri, name, object, scene.warnings);
   const std::string file = uri.substr(0, 80);
   volume.name = densities.name.empty() ? file : fmt::format("{}: {}", file, densities.name);
-  volume.node = node;
   volume.size = densities.size;
   volume.density = std::move(densities.values);
-  if (const std::size_t bad = scaleDensities(volume.density, source.value("density_scale", 1.0f)); bad > 0)
+  if (const std::size_t bad = scaleDensities(volume.density, scale); bad > 0)
     scene.warnings.push_back(
         fmt::format("{}: {} of {} densities are negative or not finite and are taken as 0", object, bad,
                     volume.density.size()));
-  glm::dmat4 node_from_grid = densities.file_from_grid;
-  if (glm::dvec3 size(0.0); source.contains("size")) {
-    readMember(source, "size", size);
-    node_from_grid = glm::scale(glm::translate(glm::dmat4(1.0), -0.5 * size), size / glm::dvec3(volume.size));
-  }
-  volume.node_from_grid = glm::mat4(node_from_grid);
-  readMember(source, "albedo", volume.albedo);
-  readMember(source, "g", volume.g);
+  volume.node_from_grid =
+      glm::mat4(size == glm::dvec3(0.0) ? densities.file_from_grid
+                                        : glm::scale(glm::translate(glm::dmat4(1.0), -0.5 * size),
+                                                     size / glm::dvec3(volume.size)));
   scene.volumes.push_back(std::move(volume));
 }
 
@@ -95,10 +129,12 @@ void convertGrids(const Document& document, const NodeMap& map, Scene& scene) {
     if (!ours.is_object()) continue;
     const auto number = static_cast<std::uint32_t>(node);
     if (const auto request = ours.find("neighborhood"); request != ours.end()) {
+      const std::string object = fmt::format("node {}: its neighborhood", map.file_node[node]);
+      if (!request->is_object()) refuse("{} is not an object", object);
       NeighborhoodRequest& added = scene.neighborhoods.emplace_back();
       added.node = number;
-      readMember(*request, "size", added.size);
-      readMember(*request, "extent", added.extent);
+      readWithin(*request, "size", 2, 256, object, added.size);
+      readWithin(*request, "extent", kSmallestNumber, kLargestNumber, object, added.extent);
     }
     const auto volume = ours.find("volume");
     if (volume == ours.end()) continue;

@@ -1,7 +1,7 @@
 #include "runtime/scene/bounds.hpp"
 
-#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -73,36 +73,23 @@ Box worldBounds(const ecs::Registry& registry) {
 namespace {
 
 struct Placed {
-  std::array<glm::dvec3, 8> corners;
-  std::array<glm::dvec3, 3> edges;
+  glm::dvec3 center;
+  std::array<glm::dvec3, 3> halves;  // of the edges
 };
 
 Placed place(const Box& box, const glm::mat4& world_from_box, const glm::dvec3& origin) {
   const glm::dmat4 matrix(world_from_box);
-  const glm::dvec3 low(box.min), size = glm::dvec3(box.max) - low;
-  const glm::dvec3 first = glm::dvec3(matrix * glm::dvec4(low, 1.0)) - origin;
-  Placed placed{};
-  for (int axis = 0; axis < 3; ++axis)
-    placed.edges[static_cast<std::size_t>(axis)] = size[axis] * glm::dvec3(matrix[axis]);
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    placed.corners[corner] = first;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if ((corner >> axis & 1u) != 0) placed.corners[corner] += placed.edges[axis];
-  }
-  return placed;
+  const glm::dvec3 low(box.min), high(box.max), half = 0.5 * (high - low);
+  return {glm::dvec3(matrix * glm::dvec4(0.5 * (low + high), 1.0)) - origin,
+          {half.x * glm::dvec3(matrix[0]), half.y * glm::dvec3(matrix[1]), half.z * glm::dvec3(matrix[2])}};
 }
 
 // Returns whether the axis separates the boxes. Boxes that touch are not separated.
 bool apart(const Placed& a, const Placed& b, const glm::dvec3& axis) {
-  double a_low = std::numeric_limits<double>::infinity(), a_high = -a_low, b_low = a_low, b_high = -a_low;
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const double at_a = glm::dot(axis, a.corners[corner]), at_b = glm::dot(axis, b.corners[corner]);
-    a_low = std::min(a_low, at_a);
-    a_high = std::max(a_high, at_a);
-    b_low = std::min(b_low, at_b);
-    b_high = std::max(b_high, at_b);
-  }
-  return a_high < b_low || b_high < a_low;
+  double reach = 0.0;
+  for (const Placed* box : {&a, &b})
+    for (const glm::dvec3& half : box->halves) reach += std::abs(glm::dot(axis, half));
+  return std::abs(glm::dot(axis, b.center - a.center)) > reach;
 }
 
 }  // namespace
@@ -113,10 +100,10 @@ bool meet(const Box& a, const glm::mat4& world_from_a, const Box& b, const glm::
   const Placed at_a = place(a, world_from_a, origin), at_b = place(b, world_from_b, origin);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    if (apart(at_a, at_b, glm::cross(at_a.edges[i], at_a.edges[j]))) return false;
-    if (apart(at_a, at_b, glm::cross(at_b.edges[i], at_b.edges[j]))) return false;
-    for (const glm::dvec3& edge : at_b.edges)
-      if (apart(at_a, at_b, glm::cross(at_a.edges[i], edge))) return false;
+    if (apart(at_a, at_b, glm::cross(at_a.halves[i], at_a.halves[j]))) return false;
+    if (apart(at_a, at_b, glm::cross(at_b.halves[i], at_b.halves[j]))) return false;
+    for (const glm::dvec3& half : at_b.halves)
+      if (apart(at_a, at_b, glm::cross(at_a.halves[i], half))) return false;
   }
   return true;
 }

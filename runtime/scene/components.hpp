@@ -17,6 +17,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/ecs/fields.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -88,8 +89,6 @@ struct RigidGroupComponent {
   // changes.
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 translation{0.0f};
-  // Rotation since rest, which applies to directions of the bake: rotation * inverse(rest_rotation).
-  glm::quat turn_since_rest{1.0f, 0.0f, 0.0f, 0.0f};
   // The whole motion since rest, including scale. It takes a world position as baked to the current one.
   glm::mat4 world_from_rest{1.0f};
   std::uint64_t seen_node = 0;  // version of the node's WorldTransform from which this was computed
@@ -113,16 +112,9 @@ struct VolumeItem {
   glm::uvec3 size{1};
 };
 
-// Describes a camera, with the values of gltf::Camera. It looks along the node's -Z and stands beside a
-// Transform.
-struct CameraComponent {
+// Describes a camera. It looks along the node's -Z and stands beside a Transform.
+struct CameraComponent : gltf::Camera {
   std::uint32_t bundle = 0, camera = 0;
-  bool perspective = true;
-  float yfov_rad = 0.8f;
-  float aspect = 0.0f;             // width / height; 0 for that of the viewport
-  float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
-  float znear = 0.01f;
-  float zfar = 0.0f;  // 0 for infinite
 
   static constexpr std::string_view kComponentName = "Camera";
   static auto fields() {

@@ -1,9 +1,12 @@
 #include "runtime/scene/instantiate.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -22,20 +25,18 @@ namespace lambent::scene {
 
 namespace {
 
-// Appends a value in little-endian order on every machine. Values of fixed size come first and text last, so
-// no two inputs give the same bytes.
-template <class T>
-void append(std::vector<std::byte>& bytes, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i)
-    bytes.push_back(static_cast<std::byte>(value >> (8 * i) & 0xff));
-}
-
+// Values of fixed size come first and text last, so no two inputs give the same bytes.
 StableId hash(std::uint64_t parent, std::uint8_t kind, std::uint32_t ordinal, std::string_view name) {
+  static_assert(std::endian::native == std::endian::little, "ids are the same on every machine");
   std::vector<std::byte> bytes;
-  append(bytes, parent);
-  append(bytes, ordinal);
-  bytes.push_back(static_cast<std::byte>(kind));
-  for (const char c : name) bytes.push_back(static_cast<std::byte>(c));
+  const auto append = [&](const auto& values) {
+    const auto more = std::as_bytes(std::span(values));
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
+  append(std::array{parent});
+  append(std::array{ordinal});
+  append(std::array{kind});
+  append(name);
   return {bundle::checksum(bytes)};
 }
 
@@ -94,7 +95,11 @@ class Instantiation {
         transform.shear = glm::vec3(0.0f);
       }
       registry_.emplace<Transform>(instance_.nodes[i], transform);
-      if (node.camera >= 0) makeCamera(instance_.nodes[i], static_cast<std::uint32_t>(node.camera));
+      if (node.camera >= 0) {
+        const auto camera = static_cast<std::uint32_t>(node.camera);
+        registry_.emplace<CameraComponent>(
+            instance_.nodes[i], CameraComponent{description_.cameras[camera], options_.bundle_index, camera});
+      }
       if (node.light >= 0)
         makeLight(instance_.nodes[i], description_.lights[static_cast<std::size_t>(node.light)]);
     }
@@ -111,19 +116,6 @@ class Instantiation {
       giveId(entity, nodeOrRoot(node.parent), StableKind::Node, node.name);
       open.insert(open.end(), node.children.rbegin(), node.children.rend());
     }
-  }
-
-  void makeCamera(ecs::Entity entity, std::uint32_t index) {
-    const gltf::Camera& camera = description_.cameras[index];
-    registry_.emplace<CameraComponent>(entity, CameraComponent{.bundle = options_.bundle_index,
-                                                               .camera = index,
-                                                               .perspective = camera.perspective,
-                                                               .yfov_rad = camera.yfov_rad,
-                                                               .aspect = camera.aspect,
-                                                               .xmag = camera.xmag,
-                                                               .ymag = camera.ymag,
-                                                               .znear = camera.znear,
-                                                               .zfar = camera.zfar});
   }
 
   void makeLight(ecs::Entity entity, const gltf::Light& light) {
@@ -326,14 +318,14 @@ std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec
   for (const spec::LocalLight& light : spec::localLights(lights, origin)) {
     const ecs::Entity entity = entities.emplace_back(registry.create());
     Transform place;
-    if (const auto* sphere = std::get_if<spec::SphereLight>(&light)) {
-      place.translation = glm::vec3(sphere->position_ws);
-      registry.emplace<LocalLightComponent>(entity,
-                                            lightOf(Kind::Sphere, sphere->radius_m, sphere->radiance));
-    } else if (const auto* disc = std::get_if<spec::DiscLight>(&light)) {
-      place.translation = glm::vec3(disc->position_ws);
+    const auto add = [&](Kind kind, const auto& of_kind) {
+      place.translation = glm::vec3(of_kind.position_ws);
+      registry.emplace<LocalLightComponent>(entity, lightOf(kind, of_kind.radius_m, of_kind.radiance));
+    };
+    if (const auto* sphere = std::get_if<spec::SphereLight>(&light)) add(Kind::Sphere, *sphere);
+    if (const auto* disc = std::get_if<spec::DiscLight>(&light)) {
+      add(Kind::Disc, *disc);
       place.rotation = facing(disc->normal_ws);
-      registry.emplace<LocalLightComponent>(entity, lightOf(Kind::Disc, disc->radius_m, disc->radiance));
     }
     registry.emplace<Transform>(entity, place);
     registry.emplace<Name>(entity, "light " + std::to_string(entities.size()));

@@ -68,7 +68,7 @@ FieldInfo fieldInfo() {
                                      static_cast<float>(field.range->greatest)};
   }
   if constexpr (std::is_enum_v<T>) info.words = enumWords(field.default_value);
-  info.get_ = [](const ecs::Registry& registry, ecs::Entity entity) {
+  info.get = [](const ecs::Registry& registry, ecs::Entity entity) {
     return toValue(std::get<I>(C::fields()).of(registry.get<C>(entity)));
   };
   info.put_ = [](ecs::Registry& registry, ecs::Entity entity, const Value& value) {
@@ -84,6 +84,12 @@ std::span<const FieldInfo> fieldInfos() {
   }
   (std::make_index_sequence<std::tuple_size_v<decltype(C::fields())>>{});
   return infos;
+}
+
+std::string_view kindWord(ValueKind kind) {
+  constexpr std::string_view kWords[] = {"true or false", "a whole number", "a number", "three numbers",
+                                         "a rotation",    "a text",         "a word"};
+  return kWords[static_cast<std::size_t>(kind)];
 }
 
 enum class By : std::uint8_t {
@@ -102,13 +108,6 @@ ComponentInfo row(By by) {
   info.has = [](const ecs::Registry& registry, ecs::Entity entity) { return registry.has<C>(entity); };
   info.add = [](ecs::Registry& registry, ecs::Entity entity) { registry.emplace<C>(entity); };
   info.remove = [](ecs::Registry& registry, ecs::Entity entity) { return registry.remove<C>(entity); };
-  info.copy = [](ecs::Registry& registry, ecs::Entity from, ecs::Entity to) {
-    if (!registry.has<C>(from) || !registry.has<C>(to)) return false;
-    const C& source = registry.get<C>(from);
-    C& target = registry.edit<C>(to);
-    ecs::forEachField(target, [&](const auto& field, auto& value) { value = field.of(source); });
-    return true;
-  };
   info.bundle = [](const ecs::Registry& registry, ecs::Entity entity) -> std::optional<std::uint32_t> {
     if constexpr (requires(const C& c) { std::uint32_t{c.bundle}; }) {
       if (const C* component = registry.tryGet<C>(entity)) return component->bundle;
@@ -133,12 +132,6 @@ std::span<const ComponentInfo> components() {
       row<EnvironmentComponent>(By::File),
   };
   return kComponents;
-}
-
-std::string_view kindWord(ValueKind kind) {
-  constexpr std::string_view kWords[] = {"true or false", "a whole number", "a number", "three numbers",
-                                         "a rotation",    "a text",         "a word"};
-  return kWords[static_cast<std::size_t>(kind)];
 }
 
 bool sameBits(const Value& a, const Value& b) {

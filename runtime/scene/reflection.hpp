@@ -36,7 +36,6 @@ enum class ValueKind : std::uint8_t { Flag, Whole, Number, Vector, Rotation, Tex
 inline ValueKind kindOf(const Value& value) {
   return static_cast<ValueKind>(value.index());
 }
-std::string_view kindWord(ValueKind kind);
 
 // Returns whether the bits are equal, so 0 differs from -0 and NaN equals itself.
 bool sameBits(const Value& a, const Value& b);
@@ -56,7 +55,7 @@ struct FieldInfo {
   Result<void> check(const Value& value) const;
 
   // Returns the value. The entity must have the component.
-  Value get(const ecs::Registry& registry, ecs::Entity entity) const { return get_(registry, entity); }
+  Value (*get)(const ecs::Registry&, ecs::Entity) = nullptr;
   // Fails as check() does, and if the entity does not have the component.
   Result<void> set(ecs::Registry& registry, ecs::Entity entity, const Value& value) const;
   // Sets a value that the field had before. It may be outside the range, since files may contain such values,
@@ -64,7 +63,6 @@ struct FieldInfo {
   // missing.
   bool restore(ecs::Registry& registry, ecs::Entity entity, const Value& value) const;
 
-  Value (*get_)(const ecs::Registry&, ecs::Entity) = nullptr;
   void (*put_)(ecs::Registry&, ecs::Entity, const Value&) = nullptr;
 };
 
@@ -81,8 +79,6 @@ struct ComponentInfo {
   // Adds the component with its defaults, or replaces the one there is.
   void (*add)(ecs::Registry&, ecs::Entity) = nullptr;
   bool (*remove)(ecs::Registry&, ecs::Entity) = nullptr;  // returns false if there was none
-  // Copies the declared fields only. Does nothing and returns false unless both entities have the component.
-  bool (*copy)(ecs::Registry&, ecs::Entity from, ecs::Entity to) = nullptr;
   // Returns the number of the bundle that the component belongs to, or nothing if it belongs to none.
   std::optional<std::uint32_t> (*bundle)(const ecs::Registry&, ecs::Entity) = nullptr;
 };

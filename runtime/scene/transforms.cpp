@@ -64,10 +64,8 @@ bool updateGroup(const ecs::Registry& registry, RigidGroupComponent& group) {
   if (world_from_rest == group.world_from_rest) return false;
   group.world_from_rest = world_from_rest;
   group.translation = glm::vec3(motion * glm::dvec4(group.rest_translation, 1.0));
-  if (const auto turn = polarRotation(glm::dmat3(motion))) {
-    group.turn_since_rest = *turn;
+  if (const auto turn = polarRotation(glm::dmat3(motion)))
     group.rotation = glm::normalize(*turn * group.rest_rotation);
-  }
   return true;
 }
 

@@ -44,7 +44,7 @@ TEST(Decisions, LeaveOutTheBacksOfClosedBodies) {
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].double_sided = true;
   const auto backOf = [&](std::size_t draw, const BakeOptions& options = {}) {
-    return about(decided(scene, options).primitives[draw].decisions, "backs").choice;
+    return about(decided(scene, options).primitives[draw], "backs").choice;
   };
   scene.meshes[1].primitives[0].material = 1;
   EXPECT_EQ(backOf(0), Choice::Absent) << "the floor is single-sided";
@@ -68,7 +68,7 @@ TEST(Decisions, SayWhichCarrierAHighlightHas) {
   scene.materials.resize(2, scene.materials[0]);
   scene.materials[0].specular = 0.0f;
   scene.meshes[1].primitives[0].material = 1;
-  const auto of_ball = [&] { return decided(scene).primitives.at(1).decisions; };
+  const auto of_ball = [&] { return decided(scene).primitives.at(1); };
   scene.materials[1].metallic = 1.0f, scene.materials[1].roughness = 0.05f;
   auto mirror = of_ball();
   EXPECT_EQ(about(mirror, "matrices").choice, Choice::Baked);

@@ -208,17 +208,17 @@ std::ptrdiff_t warningsWith(const std::vector<float>& corners, const json& more 
 constexpr double kHalfTurn = std::numbers::pi;
 
 TEST(SkyDome, ThatIsClosedAboveTheSceneIsSaidByName) {
-  EXPECT_EQ(warningsWith(sphere(0.0, kHalfTurn)), 1);
-  EXPECT_EQ(warningsWith(sphere(0.0, 0.5 * kHalfTurn)), 1);
-  EXPECT_EQ(warningsWith(sphere(0.0, kHalfTurn), {{"scale", {20, 5, 20}}}), 1);
-  EXPECT_EQ(warningsWith(room(), {{"name", "SkyBox"}}), 1);
+  EXPECT_EQ(warningsWith(sphere(0.0, kHalfTurn), {{"name", "Sky_sphere"}}), 1);
+  EXPECT_EQ(warningsWith(sphere(0.0, 0.5 * kHalfTurn), {{"name", "dome"}, {"scale", {20, 5, 20}}}), 1);
+  EXPECT_EQ(warningsWith(room(), {{"name", "HDRI box"}}), 1);
 }
 
 TEST(SkyDome, IsNoBowlNorRoomNorPaneNorOpening) {
-  EXPECT_EQ(warningsWith(sphere(0.5 * kHalfTurn, kHalfTurn)), 0);
-  EXPECT_EQ(warningsWith(sphere(0.1 * kHalfTurn, kHalfTurn)), 0);
+  const json sky = {{"name", "sky"}};
+  EXPECT_EQ(warningsWith(sphere(0.5 * kHalfTurn, kHalfTurn), sky), 0);
+  EXPECT_EQ(warningsWith(sphere(0.1 * kHalfTurn, kHalfTurn), sky), 0);
   EXPECT_EQ(warningsWith(room()), 0);
-  EXPECT_EQ(warningsWith(sphere(0.0, kHalfTurn), json::object(), "BLEND"), 0);
+  EXPECT_EQ(warningsWith(sphere(0.0, kHalfTurn), sky, "BLEND"), 0);
 }
 
 }  // namespace

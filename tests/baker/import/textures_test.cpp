@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "baker/import/image.hpp"
 #include "baker/import/texture_transfer.hpp"
@@ -135,14 +136,13 @@ TEST(TextureTransfer, IsAPowerOfTwoOfAPrimitiveOrItsMesh) {
   const nlohmann::json none = nlohmann::json::object();
   for (const nlohmann::json& wrong : {nlohmann::json(0), nlohmann::json(3), nlohmann::json(65536),
                                       nlohmann::json(-64), nlohmann::json(64.5), nlohmann::json("64")})
-    EXPECT_THROW(checkTextureTransfer(asking(wrong), "mesh 0"), Error) << wrong.dump();
+    EXPECT_THROW(textureTransferOf(asking(wrong), none, "mesh 0"), Error) << wrong.dump();
   for (const std::uint32_t right : {16u, 256u, 2048u}) {
     const nlohmann::json owner = asking(right);
-    EXPECT_NO_THROW(checkTextureTransfer(owner, "mesh 0"));
-    EXPECT_EQ(textureTransferOf(owner, none), right);
-    EXPECT_EQ(textureTransferOf(asking(32), owner), right) << "the primitive's own goes first";
+    EXPECT_EQ(textureTransferOf(owner, none, "mesh 0"), right);
+    EXPECT_EQ(textureTransferOf(asking(32), owner, "mesh 0"), right) << "the primitive's own goes first";
   }
-  EXPECT_EQ(textureTransferOf(none, none), 0u);
+  EXPECT_EQ(textureTransferOf(none, none, "mesh 0"), 0u);
 }
 
 }  // namespace

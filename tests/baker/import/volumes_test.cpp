@@ -195,7 +195,7 @@ TEST(Neighborhood, IsAskedForWithSizeAndExtentOrWithout) {
   EXPECT_EQ(scene.neighborhoods[0].extent, glm::vec3(0.0f));
 
   extras["lambent"]["neighborhood"] = {{"size", {64, 64, 1}}};
-  EXPECT_NE(refusal(writer, folder).find("not between 2 and 256"), std::string::npos);
+  EXPECT_NE(refusal(writer, folder).find("three numbers between 2 and 256"), std::string::npos);
   extras["lambent"]["neighborhood"] = {{"extent", {1, -1, 1}}};
   EXPECT_NE(refusal(writer, folder).find("extent"), std::string::npos);
 }
