@@ -21,17 +21,10 @@ namespace {
 // Makes a piece of hilly land to fly over: heights by fractal noise, a mesh, and an image of its colours
 // (grass in the valleys, rock where it is steep, snow on the peaks).
 
-struct Terrain {
-  float side_m = 40.0f;   // of a square about the origin
-  float height_m = 5.0f;  // approximate height of the highest peaks
-  float bowl_m = 11.0f;   // radius of the valley in the middle
-  std::uint32_t seed = 5;
-
-  // Returns the height at (x, z), all in metres.
-  float height(float x, float z) const;
-};
-
-constexpr std::uint32_t kPeriod = 256;
+constexpr float kSide_m = 40.0f;   // of a square about the origin
+constexpr float kHeight_m = 5.0f;  // approximate height of the highest peaks
+constexpr float kBowl_m = 11.0f;   // radius of the valley in the middle
+constexpr std::uint32_t kSeed = 5, kPeriod = 256;
 
 // Returns ridges that are sharp on top, by folding noise.
 float ridged(glm::vec2 at, std::uint32_t seed) {
@@ -47,10 +40,20 @@ float ridged(glm::vec2 at, std::uint32_t seed) {
   return sum;
 }
 
-glm::vec3 normalAt(const Terrain& terrain, float x, float z) {
+// Returns the height at (x, z), all in metres.
+float heightAt(float x, float z) {
+  const float from_middle = std::sqrt(x * x + z * z) / kBowl_m;
+  const float rise = glm::smoothstep(0.55f, 1.6f, from_middle);
+  // Lattice coordinates must stay positive.
+  const glm::vec2 at = glm::vec2(x, z) / 9.0f + 60.0f;
+  const float rolling = noise(at * 1.7f, kPeriod, kSeed + 40) - 0.5f;
+  return kHeight_m * (rise * ridged(at, kSeed) * 1.15f + 0.10f * rolling);
+}
+
+glm::vec3 normalAt(float x, float z) {
   constexpr float kStep = 0.05f;
-  const float along_x = terrain.height(x + kStep, z) - terrain.height(x - kStep, z);
-  const float along_z = terrain.height(x, z + kStep) - terrain.height(x, z - kStep);
+  const float along_x = heightAt(x + kStep, z) - heightAt(x - kStep, z);
+  const float along_z = heightAt(x, z + kStep) - heightAt(x, z - kStep);
   return glm::normalize(glm::vec3(-along_x, 2.0f * kStep, -along_z));
 }
 
@@ -59,36 +62,27 @@ float srgb(float linear) {
   return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
 }
 
-float Terrain::height(float x, float z) const {
-  const float from_middle = std::sqrt(x * x + z * z) / bowl_m;
-  const float rise = glm::smoothstep(0.55f, 1.6f, from_middle);
-  // Lattice coordinates must stay positive.
-  const glm::vec2 at = glm::vec2(x, z) / 9.0f + 60.0f;
-  const float rolling = noise(at * 1.7f, kPeriod, seed + 40) - 0.5f;
-  return height_m * (rise * ridged(at, seed) * 1.15f + 0.10f * rolling);
-}
-
 // Makes a mesh of cells x cells cells, with texture coordinates 0..1 over the square.
-Mesh terrainMesh(const Terrain& terrain, int cells) {
+Mesh terrainMesh(int cells) {
   Mesh mesh = surface(cells, cells, [&](double u, double v) {
-    const float x = terrain.side_m * (static_cast<float>(u) - 0.5f);
-    const float z = terrain.side_m * (0.5f - static_cast<float>(v));
-    return SurfacePoint{{x, terrain.height(x, z), z}, normalAt(terrain, x, z)};
+    const float x = kSide_m * (static_cast<float>(u) - 0.5f);
+    const float z = kSide_m * (0.5f - static_cast<float>(v));
+    return SurfacePoint{{x, heightAt(x, z), z}, normalAt(x, z)};
   });
   mesh.texcoords.clear();
   for (const glm::vec3& at : mesh.positions)
-    mesh.texcoords.emplace_back(at.x / terrain.side_m + 0.5f, at.z / terrain.side_m + 0.5f);
+    mesh.texcoords.emplace_back(at.x / kSide_m + 0.5f, at.z / kSide_m + 0.5f);
   return mesh;
 }
 
-std::vector<std::uint8_t> terrainPng(const Terrain& terrain, std::uint32_t side) {
+std::vector<std::uint8_t> terrainPng(std::uint32_t side) {
   return squarePng(side, [&](std::uint32_t column, std::uint32_t row) {
     const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(side);
     const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(side);
-    const float x = terrain.side_m * (u - 0.5f), z = terrain.side_m * (v - 0.5f);
-    const float level = terrain.height(x, z) / terrain.height_m;
-    const float steep = 1.0f - normalAt(terrain, x, z).y;
-    const float grain = noise(glm::vec2(column, row) * 0.37f, 4096, terrain.seed + 90) - 0.5f;
+    const float x = kSide_m * (u - 0.5f), z = kSide_m * (v - 0.5f);
+    const float level = heightAt(x, z) / kHeight_m;
+    const float steep = 1.0f - normalAt(x, z).y;
+    const float grain = noise(glm::vec2(column, row) * 0.37f, 4096, kSeed + 90) - 0.5f;
     const glm::vec3 grass(0.17f, 0.26f, 0.075f), rock(0.33f, 0.29f, 0.25f), snow(0.82f, 0.84f, 0.87f);
     glm::vec3 color = glm::mix(grass, glm::vec3(0.30f, 0.30f, 0.12f), std::clamp(3.0f * level, 0.0f, 1.0f));
     color = glm::mix(color, rock, glm::smoothstep(0.10f, 0.26f, steep + 0.08f * grain));
@@ -160,8 +154,7 @@ Mesh ringWing(float radius, float width, float thickness) {
 Scene flight() {
   Scene scene;
   scene.name = "flight";
-  const Terrain terrain;
-  scene.images = {{"land", terrainPng(terrain, 512)}};
+  scene.images = {{"land", terrainPng(512)}};
   scene.materials = {{.name = "land", .base_color = glm::vec3(1.0f), .image = 0},
                      {.name = "hull", .base_color = {0.75f, 0.16f, 0.07f}},
                      {.name = "polished ring",
@@ -170,7 +163,7 @@ Scene flight() {
                       .roughness = 0.05f,
                       .metallic = 1.0f,
                       .specular = 1.0f}};
-  scene.meshes = {{"land", terrainMesh(terrain, 150), kLand}};
+  scene.meshes = {{"land", terrainMesh(150), kLand}};
   scene.nodes = {{.name = "land", .mesh = 0}};
 
   constexpr float kCircle = 5.0f, kHeight = 1.35f, kScale = 1.5f;

@@ -44,14 +44,10 @@ void buildBareScene(Workload& work) {
   work.device = rtcNewDevice(nullptr);
   work.scene = rtcNewScene(work.device);
   rtcSetSceneBuildQuality(work.scene, RTC_BUILD_QUALITY_HIGH);
-  RTCGeometry geometry = rtcNewGeometry(work.device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const auto& g = work.group->geometry;
-  std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                      sizeof(glm::vec3), g.positions.size()),
-              g.positions.data(), g.positions.size() * sizeof(glm::vec3));
-  std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                      sizeof(glm::uvec3), g.triangles.size()),
-              g.triangles.data(), g.triangles.size() * sizeof(glm::uvec3));
+  RTCGeometry geometry =
+      newTriangles(work.device, g.positions, static_cast<std::uint32_t>(g.triangles.size()),
+                   [&](std::uint32_t t) { return g.triangles[t]; });
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(work.scene, geometry);
   rtcReleaseGeometry(geometry);

@@ -13,14 +13,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <functional>
 #include <map>
-#include <optional>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -40,7 +37,7 @@ struct Words {
   std::vector<std::filesystem::path> bundles;
   double share = 1.0 / 3.0;
   int copies = 1, frames = 300;
-  spec::Size size{640, 360};
+  spec::Size size;
   std::string light = "constant:1,1,1";
 };
 
@@ -49,33 +46,20 @@ void stop(const Error& error) {
   std::exit(1);
 }
 
-Words understand(int argc, char** argv) {
-  Words words;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto value = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-    if (word == "--share")
-      words.share = std::atof(value().c_str());
-    else if (word == "--copies")
-      words.copies = std::max(1, std::atoi(value().c_str()));
-    else if (word == "--frames")
-      words.frames = std::max(2, std::atoi(value().c_str()));
-    else if (word == "--light")
-      words.light = value();
-    else if (word == "--size") {
-      const Result<spec::Size> size = spec::parseSize(value());
-      if (!size) stop(size.error());
-      words.size = *size;
-    } else if (std::filesystem::is_directory(word)) {
-      for (const auto& entry : std::filesystem::directory_iterator(word))
-        if (entry.path().string().ends_with(".lmb.glb")) words.bundles.push_back(entry.path());
-    } else {
-      words.bundles.emplace_back(word);
+// Folders stand for the bundles in them.
+std::vector<std::filesystem::path> bundlesOf(const std::vector<std::filesystem::path>& places) {
+  std::vector<std::filesystem::path> bundles;
+  for (const std::filesystem::path& place : places) {
+    if (!std::filesystem::is_directory(place)) {
+      bundles.push_back(place);
+      continue;
     }
+    for (const auto& entry : std::filesystem::directory_iterator(place))
+      if (entry.path().string().ends_with(".lmb.glb")) bundles.push_back(entry.path());
   }
-  std::ranges::sort(words.bundles);
-  if (words.bundles.empty()) stop({"FOLDER", "names no bundle", "give .lmb.glb files or a folder of them"});
-  return words;
+  std::ranges::sort(bundles);
+  if (bundles.empty()) stop({"FOLDER", "names no bundle", "give .lmb.glb files or a folder of them"});
+  return bundles;
 }
 
 struct Row {
@@ -118,21 +102,7 @@ struct Flight {
   std::size_t brought = 0;  // number of frames that uploaded something
   // One entry per pass: milliseconds of the CPU in each frame that had it.
   std::map<std::string, frame::FrameTimes> passes{};
-  // The time of the slowest frames in milliseconds, and the passes that took most of it.
-  std::vector<std::pair<double, std::string>> slowest{};
 };
-
-// Lists the passes that took more than a twentieth of the frame: "upload 12.1 (gpu 0.3), glossy 4.0 (gpu
-// 9.1)".
-std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
-  std::string text;
-  for (const gpu::PassTime& pass : passes) {
-    const double gpu_ms = std::max(pass.gpu_ms, 0.0);
-    if (std::max(pass.cpu_ms, gpu_ms) < 0.05 * frame_ms) continue;
-    text += fmt::format("{}{} {:.1f} (gpu {:.1f})", text.empty() ? "" : ", ", pass.name, pass.cpu_ms, gpu_ms);
-  }
-  return text;
-}
 
 Flight fly(const Words& words, Row& row, lighting::Environment& environment, bool load_first) {
   frame::FrameOptions options;
@@ -175,9 +145,6 @@ Flight fly(const Words& words, Row& row, lighting::Environment& environment, boo
         flight.brought += pass.counters.uploaded_bytes > 0 ? 1u : 0u;
       }
     }
-    flight.slowest.emplace_back(wall_ms, dearest(frame->timers().latest(), wall_ms));
-    std::ranges::sort(flight.slowest, std::ranges::greater());
-    if (flight.slowest.size() > 5) flight.slowest.pop_back();
   }
   for (const frame::BundleError& wrong : row.world.errors()) stop(wrong.error);
   return flight;
@@ -215,14 +182,26 @@ void print(const std::string& name, const Flight& flight) {
   for (const auto& [pass, times] : flight.passes)
     fmt::print("  CPU of {}: median {:.2f} ms, 95 % under {:.2f} ms, worst {:.2f} ms\n", pass, times.median(),
                times.quantile(0.95), times.worst());
-  for (const auto& [wall_ms, passes] : flight.slowest) fmt::print("  slow: {:.1f} ms: {}\n", wall_ms, passes);
   std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Words words = understand(argc, argv);
+  Words words;
+  std::string size = "640x360";
+  CLI::App app("Measures frames of a flight along bundles that need more memory than there is.");
+  app.add_option("BUNDLE", words.bundles)->required();
+  app.add_option("--share", words.share);
+  app.add_option("--copies", words.copies)->check(CLI::PositiveNumber);
+  app.add_option("--frames", words.frames)->check(CLI::Range(2, 1'000'000));
+  app.add_option("--size", size);
+  app.add_option("--light", words.light);
+  CLI11_PARSE(app, argc, argv);
+  words.bundles = bundlesOf(words.bundles);
+  const Result<spec::Size> parsed = spec::parseSize(size);
+  if (!parsed) stop(parsed.error());
+  words.size = *parsed;
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) stop(context.error());
   const Result<spec::Light> light = spec::parseLight(words.light);

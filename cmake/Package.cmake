@@ -76,7 +76,7 @@ install(FILES "${bundle}" DESTINATION share/lambent/scenes COMPONENT runtime)
 install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
   DESTINATION share/lambent/probes COMPONENT runtime)
 install(DIRECTORY "${CMAKE_BINARY_DIR}/assets/" DESTINATION share/lambent/scenes COMPONENT tools FILES_MATCHING PATTERN "*.glb"
-  PATTERN "*.png" PATTERN "*.lmb.glb" EXCLUDE PATTERN "CMakeFiles" EXCLUDE)
+  PATTERN "*.lmb.glb" EXCLUDE PATTERN "CMakeFiles" EXCLUDE)
 install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
   DESTINATION share/lambent/probes COMPONENT tools)
 

@@ -19,8 +19,8 @@
 #include "baker/jobs/progress.hpp"
 #include "reference/camera.hpp"
 #include "reference/lights.hpp"
-#include "reference/options.hpp"
 #include "reference/ray_tracer.hpp"
+#include "reference/reference.hpp"
 #include "reference/volumes.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/image.hpp"
@@ -52,6 +52,7 @@ struct World {
   const Environment& environment;
   const std::vector<spec::LocalLight>& shapes;
   EyeRays eye;
+  const Options& options;
 };
 
 struct PixelSum {
@@ -70,19 +71,10 @@ struct PixelSum {
 // find what is blocked. The transmittance of volumes along eye rays is exact, too, so coverage has no noise.
 //
 // All samples of a pixel in one call advance together, so that their rays are traced in packets. Samples
-// alternate between two independent replicas, which gives an unbiased error estimate of their mean. One
-// Integrator serves all threads.
-class Integrator {
- public:
-  Integrator(const World& world, const Options& options) : world_(world), options_(options) {}
-
-  // Traces samples first..first + count - 1 of the pixel. Even samples belong to replica 0.
-  PixelSum pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t count) const;
-
- private:
-  const World& world_;
-  const Options& options_;
-};
+// alternate between two independent replicas, which gives an unbiased error estimate of their mean: even
+// samples belong to replica 0. Traces samples first..first + count - 1. May be called from any thread.
+PixelSum tracePixel(const World& world, std::uint32_t x, std::uint32_t y, std::uint32_t first,
+                    std::uint32_t count);
 
 class Film {
  public:
@@ -137,7 +129,7 @@ class Film {
 // functions, so that their pictures are equal.
 
 // Returns the number of samples per pixel in one pass.
-std::uint32_t samplesInPass(const Options& options, const Volumes& volumes);
+std::uint32_t samplesInPass(const World& world);
 
 // The number of rows traced between two checks of the clock.
 inline constexpr std::uint32_t kRowsAtOnce = 32;
@@ -148,7 +140,7 @@ struct Rows {
 
 // Brings rows to `samples` per pixel, in parallel. Returns false if stopped; unfinished rows
 // are dropped, so stopping takes no longer than a few pixels.
-bool addSamples(const Integrator& integrator, Film& film, const Rows& rows, std::uint32_t samples,
-                Progress& progress, const std::stop_token& stop);
+bool addSamples(const World& world, Film& film, const Rows& rows, std::uint32_t samples, Progress& progress,
+                const std::stop_token& stop);
 
 }  // namespace lambent::baker::reference

@@ -278,7 +278,6 @@ std::vector<PunctualLight> punctualLights(const Scene& scene) {
   return out;
 }
 
-// Follows KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
 std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position) {
   const gltf::Light& l = light.light;
   Beam beam{.distance = std::numeric_limits<float>::infinity(), .irradiance = l.intensity * l.color};
@@ -290,17 +289,11 @@ std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position
   beam.distance = glm::length(to);
   if (!(beam.distance > 0.0f)) return std::nullopt;
   beam.to_light = to / beam.distance;
-  float fade = 1.0f / (beam.distance * beam.distance);
-  if (l.range_m > 0.0f) {
-    const float share = beam.distance / l.range_m, share2 = share * share;
-    fade *= std::clamp(1.0f - share2 * share2, 0.0f, 1.0f);
-  }
-  if (l.type == gltf::Light::Type::Spot) {
-    const float cos_outer = std::cos(l.outer_cone_rad);
-    const float scale = 1.0f / std::max(0.001f, std::cos(l.inner_cone_rad) - cos_outer);
-    const float inside = std::clamp((glm::dot(light.along, -beam.to_light) - cos_outer) * scale, 0.0f, 1.0f);
-    fade *= inside * inside;
-  }
+  const double distance = beam.distance;
+  auto fade = static_cast<float>(sh::rangeFade(distance, l.range_m) / (distance * distance));
+  if (l.type == gltf::Light::Type::Spot)
+    fade *= static_cast<float>(
+        sh::coneFade(glm::dot(light.along, -beam.to_light), l.inner_cone_rad, l.outer_cone_rad));
   if (!(fade > 0.0f)) return std::nullopt;
   beam.irradiance *= fade;
   return beam;
@@ -406,16 +399,9 @@ sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::
   return std::visit([&](const auto& shape) { return truncated(shape, order, glm::dvec3(point)); }, light);
 }
 
-Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights) {
-  std::vector<spec::DistantLights> each;
-  for (const spec::Light& light : lights) {
-    auto loaded = spec::loadDistantLights({light});
-    if (!loaded) return failAgain(std::move(loaded.error()));
-    each.push_back(std::move(*loaded));
-  }
-  return each;
-}
+namespace {
 
+// Combines the lights, each times its factor, and those in `more`, which may be null.
 spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors,
                              const spec::DistantLights* more) {
   spec::DistantLights all;
@@ -432,12 +418,14 @@ spec::DistantLights together(const std::vector<spec::DistantLights>& each, const
     }
   };
   for (std::size_t i = 0; i < each.size(); ++i) {
-    add(each[i], i < factors.size() ? factors[i] : 1.0f);
+    add(each[i], factors[i]);
     all.notices.insert(all.notices.end(), each[i].notices.begin(), each[i].notices.end());
   }
   if (more) add(*more, 1.0f);
   return all;
 }
+
+}  // namespace
 
 Result<std::shared_ptr<const Environment>> LightCache::environment(
     const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
@@ -452,23 +440,24 @@ Result<std::shared_ptr<const Environment>> LightCache::environment(
     distant.push_back(lights[i]);
     of_distant.push_back(i < factors.size() ? factors[i] : 1.0f);
   }
-  if (!loaded_ || distant != lights_) {
-    loaded_.reset(), environment_.reset();
-    auto loaded = loadEach(distant);
-    if (!loaded) return failAgain(std::move(loaded.error()));
-    loaded_ = std::move(*loaded);
-    lights_ = std::move(distant);
+  if (loaded_from_.renew(distant)) {
+    made_from_.forget();
+    loaded_.clear();
+    for (const spec::Light& light : distant) {
+      auto loaded = spec::loadDistantLights({light});
+      if (!loaded) {
+        loaded_from_.forget();
+        return failAgain(std::move(loaded.error()));
+      }
+      loaded_.push_back(std::move(*loaded));
+    }
   }
   const int band_limit = options.band_limit ? options.band_limit->in : 0;
-  if (!environment_ || factors_ != of_distant || turn_deg_ != options.rotate_light_deg ||
-      band_limit_ != band_limit || more_ != more) {
-    more_ = more;
-    factors_ = std::move(of_distant);
-    turn_deg_ = options.rotate_light_deg;
-    band_limit_ = band_limit;
-    spec::DistantLights combined = together(*loaded_, factors_, more_.get());
+  if (made_from_.renew(of_distant, more, options.rotate_light_deg, band_limit)) {
+    spec::DistantLights combined = together(loaded_, of_distant, more.get());
     notices_ = combined.notices;
-    environment_ = std::make_shared<const Environment>(std::move(combined), turn_deg_, band_limit_);
+    environment_ =
+        std::make_shared<const Environment>(std::move(combined), options.rotate_light_deg, band_limit);
   }
   return environment_;
 }

@@ -14,8 +14,9 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "reference/options.hpp"
+#include "reference/reference.hpp"
 #include "reference/surfaces.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
@@ -44,6 +45,7 @@ class Environment {
   };
   Look look(const glm::vec3& dir) const;
   bool dark() const { return dark_; }
+  const spec::DistantLights& lights() const { return lights_; }
   // Returns the light as spherical harmonics in world space, rotated, and cut to the band limit if there is
   // one.
   const sh::LightVector& lightVector() const { return vector_; }
@@ -152,22 +154,13 @@ std::optional<WayToLight> lookAtShape(const spec::LocalLight& light, const glm::
 // Returns the first SH bands of the unoccluded light at the point, as a light probe there would store it.
 sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::vec3& point);
 
-// Loads distant lights, each separately. Returns one entry per light; entries of lights within the scene are
-// empty. Errors: an environment map cannot be loaded.
-Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights);
-
-// Combines the lights, each times its factor (missing ones are 1), and those in `more`, which may be null.
-// With factors of 1 the result is bit-identical to that of loadDistantLights().
-spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors,
-                             const spec::DistantLights* more);
-
 // Caches the last distant light, because loading environment maps and preparing them for sampling is slow and
 // successive pictures mostly have the same light. Use it from one thread.
 class LightCache {
  public:
   // Returns the environment of these lights. Lights are compared by their words, so an environment map that
-  // changed on disk is not loaded again. `factors` and `more` are as in Request. Errors: an environment map
-  // cannot be loaded.
+  // changed on disk is not loaded again. `factors` and `more` are as in Request; with factors of 1 the light
+  // has the bits of loadDistantLights(). Errors: an environment map cannot be loaded.
   Result<std::shared_ptr<const Environment>> environment(
       const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
       const std::shared_ptr<const spec::DistantLights>& more = {});
@@ -175,14 +168,12 @@ class LightCache {
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  std::vector<spec::Light> lights_;                         // the distant ones
-  std::optional<std::vector<spec::DistantLights>> loaded_;  // one per light; none if nothing is loaded
+  ChangeGate<std::vector<spec::Light>> loaded_from_;  // the distant ones
+  std::vector<spec::DistantLights> loaded_;           // one per light
   std::vector<std::string> notices_;
-  std::vector<float> factors_;
-  std::shared_ptr<const spec::DistantLights> more_;
-  float turn_deg_ = 0.0f;
-  int band_limit_ = 0;
-  std::shared_ptr<const Environment> environment_;  // built from the members above; null if there is none yet
+  // Factors, more light, rotation and band limit.
+  ChangeGate<std::vector<float>, std::shared_ptr<const spec::DistantLights>, float, int> made_from_;
+  std::shared_ptr<const Environment> environment_;
 };
 
 }  // namespace lambent::baker::reference

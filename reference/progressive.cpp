@@ -158,9 +158,9 @@ class ProgressiveReference::Worker {
     for (const auto& [by, samples] : kCoarse) {
       Options coarse = options;
       coarse.size = coarser(options.size, by);
-      const World world{*traced_, **environment, shapes, EyeRays(*view, coarse.size)};
+      const World world{*traced_, **environment, shapes, EyeRays(*view, coarse.size), coarse};
       Film film(coarse.size, 0);
-      if (!fill(job, Integrator(world, coarse), film, std::min(samples, options.spp))) return {};
+      if (!fill(job, world, film, std::min(samples, options.spp))) return {};
       shown = enlarged(film.image(), options.size);
       Snapshot out;
       out.image = shown;
@@ -168,10 +168,9 @@ class ProgressiveReference::Worker {
       publish(job, std::move(out));
     }
 
-    const World world{*traced_, **environment, shapes, EyeRays(*view, options.size)};
-    const Integrator integrator(world, options);
+    const World world{*traced_, **environment, shapes, EyeRays(*view, options.size), options};
     Film film(options.size, 0);
-    const std::uint32_t together = samplesInPass(options, traced_->volumes);
+    const std::uint32_t together = samplesInPass(world);
     Clock::time_point shown_at = Clock::now();
     const auto showRows = [&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t y = first; y < last; ++y) film.putRow(y, shown);
@@ -184,8 +183,7 @@ class ProgressiveReference::Worker {
     };
     for (std::uint32_t done = 0; done < options.spp;) {
       const std::uint32_t next = done + std::min(together, options.spp - done);
-      const bool whole =
-          done == 0 ? fill(job, integrator, film, next, showRows) : fill(job, integrator, film, next);
+      const bool whole = done == 0 ? fill(job, world, film, next, showRows) : fill(job, world, film, next);
       if (!whole) return {};
       done = next;
       publish(job, snapshotOf(film, done));
@@ -205,14 +203,14 @@ class ProgressiveReference::Worker {
 
   using OnRows = std::function<void(std::uint32_t first, std::uint32_t last)>;
   // Returns false if stopped.
-  bool fill(const Job& job, const Integrator& integrator, Film& film, std::uint32_t samples,
+  bool fill(const Job& job, const World& world, Film& film, std::uint32_t samples,
             const OnRows& on_rows = {}) {
     const std::uint32_t height = film.size().height;
     progress_.begin("paths", std::uint64_t{film.size().width} * height * (samples - film.done(0)), "samples");
     for (std::uint32_t first = 0; first < height; first += kRowsAtOnce) {
       const std::uint32_t last = std::min(first + kRowsAtOnce, height);
       if (job.stop.stop_requested()) return false;
-      if (!addSamples(integrator, film, {first, last}, samples, progress_, job.stop)) return false;
+      if (!addSamples(world, film, {first, last}, samples, progress_, job.stop)) return false;
       if (on_rows) on_rows(first, last);
     }
     return true;

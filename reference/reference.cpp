@@ -14,7 +14,6 @@
 #include "reference/camera.hpp"
 #include "reference/film.hpp"
 #include "reference/lights.hpp"
-#include "reference/options.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
@@ -29,29 +28,16 @@ namespace {
 // Says beforehand how much memory a picture needs, so that one that is too large is refused before hours of
 // tracing, and not ended by the system in the middle. Bytes are those of the whole program.
 
-// A checkpoint is put together before it is written; the picture and its coded bytes take less, 20 + 20.
-constexpr std::uint64_t kBytesOfResult = Film::kBytesOfPixel;
-// A triangle takes so much with Embree's hierarchy. It was measured on scans of 90 and 270 thousand
-// triangles.
-constexpr std::uint64_t kBytesOfTriangle = 130;
+// A checkpoint is put together beside the samples' sums before it is written; the picture and its coded bytes
+// take less, 20 + 20.
+constexpr std::uint64_t kBytesOfPixel = 2 * Film::kBytesOfPixel;
+// A triangle takes so much with its vertices and Embree's hierarchy, which was measured as 130 on scans of 90
+// and 270 thousand triangles.
+constexpr std::uint64_t kBytesOfTriangle = 190;
 constexpr std::uint64_t kBytesOfAnyScene = 6'000'000;  // Embree itself, threads and constant light
-
-std::uint64_t bytesOfVertices(const bundle::MeshData& mesh) {
-  std::uint64_t bytes_of_one = 2 * sizeof(glm::vec3);
-  for (const auto* texcoords : {&mesh.texcoords0, &mesh.texcoords1})
-    if (!texcoords->empty()) bytes_of_one += sizeof(glm::vec2);
-  if (!mesh.colors.empty()) bytes_of_one += sizeof(glm::vec4);
-  if (!mesh.tangents.empty()) bytes_of_one += sizeof(glm::vec4);
-  return bytes_of_one * mesh.positions.size();
-}
 
 std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(bytes));
-}
-
-// Returns the bytes of the samples' sums, and of the picture or a checkpoint beside them.
-std::uint64_t bytesOfPicture(const spec::Size& size) {
-  return std::uint64_t{size.width} * size.height * (Film::kBytesOfPixel + kBytesOfResult);
 }
 
 // Returns about the bytes of the scene as it is traced: surfaces and the ray hierarchy, without textures.
@@ -60,7 +46,7 @@ std::uint64_t bytesOfTracing(const Scene& scene) {
   for (const gltf::Node& node : scene.nodes) {
     if (node.mesh < 0) continue;
     for (const ScenePrimitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives)
-      bytes += bytesOfVertices(primitive.mesh) + kBytesOfTriangle * (primitive.mesh.indices.size() / 3);
+      bytes += kBytesOfTriangle * (primitive.mesh.indices.size() / 3);
   }
   return bytes;
 }
@@ -86,13 +72,10 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-struct SampleCounts {
-  std::uint32_t per_pixel, in_pass;
-};
-
 // Renders the picture pass by pass, and writes a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const Integrator& integrator, Film& film, const SampleCounts& samples,
-                       const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
+Result<void> renderAll(const World& world, Film& film, const fs::path& checkpoint, Progress& progress,
+                       const std::stop_token& stop) {
+  const std::uint32_t samples = world.options.spp, in_pass = samplesInPass(world);
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
   Clock::time_point saved = begin;
@@ -102,11 +85,10 @@ Result<void> renderAll(const Integrator& integrator, Film& film, const SampleCou
     if (checkpoint.empty()) return {};
     return film.save(checkpoint);
   };
-  for (std::uint32_t pass = 0; pass < samples.per_pixel; pass += samples.in_pass)
+  for (std::uint32_t pass = 0; pass < samples; pass += in_pass)
     for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
       const Rows rows{row, std::min(row + kRowsAtOnce, film.size().height)};
-      const bool whole = addSamples(integrator, film, rows,
-                                    std::min(samples.per_pixel, pass + samples.in_pass), progress, stop);
+      const bool whole = addSamples(world, film, rows, std::min(samples, pass + in_pass), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
       if (!whole)
@@ -146,16 +128,17 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
   if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
   Report report;
-  const std::uint64_t of_picture = bytesOfPicture(options.size);
+  const std::uint64_t of_picture = std::uint64_t{options.size.width} * options.size.height * kBytesOfPixel;
   const std::string picture = fmt::format("a picture of {} x {}", options.size.width, options.size.height);
   if (auto fits = checkMemory(options, of_picture + bytesOfTracing(scene), picture); !fits)
     return failAgain(std::move(fits.error()));
   // Load the light, and build the scene in world space.
   progress.begin("scene");
-  const auto loaded = loadEach(request.lights);
-  if (!loaded) return failAgain(loaded.error());
-  spec::DistantLights lights = together(*loaded, request.light_factors, request.more_light.get());
-  report.notices = lights.notices;
+  LightCache lights;
+  const auto environment =
+      lights.environment(request.lights, request.light_factors, options, request.more_light);
+  if (!environment) return failAgain(environment.error());
+  report.notices = lights.notices();
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, scene.origin);
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
@@ -164,9 +147,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
     return failAgain(std::move(fits.error()));
   const auto view = viewOf(scene, (*traced)->surfaces, request);
   if (!view) return failAgain(view.error());
-  Film film(options.size, digestOf(scene, lights, shapes, *view, options));
-  const Environment environment(std::move(lights), options.rotate_light_deg,
-                                options.band_limit ? options.band_limit->in : 0);
+  Film film(options.size, digestOf(scene, (*environment)->lights(), shapes, *view, options));
   // Resume an earlier run.
   const fs::path checkpoint = checkpointOf(output);
   takeUp(film, checkpoint, force, report);
@@ -175,10 +156,8 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
     left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
   // Trace the paths.
   progress.begin("paths", left, "samples");
-  const World world{**traced, environment, shapes, EyeRays(*view, options.size)};
-  auto done =
-      renderAll(Integrator(world, options), film, {options.spp, samplesInPass(options, (*traced)->volumes)},
-                checkpoint, progress, stop);
+  const World world{**traced, **environment, shapes, EyeRays(*view, options.size), options};
+  auto done = renderAll(world, film, checkpoint, progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();

@@ -9,38 +9,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/brdf/brdf.hpp"
 #include "reference/sampler.hpp"
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker::reference {
-
-namespace {
-
-// These are glTF's sampler constants.
-constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
-
-// Tabulates the sRGB decoding of IEC 61966-2-1.
-std::array<float, 256> srgbTable() {
-  std::array<float, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const float coded = static_cast<float>(i) / 255.0f;
-    table[i] = coded <= 0.04045f ? coded / 12.92f : std::pow((coded + 0.055f) / 1.055f, 2.4f);
-  }
-  return table;
-}
-const std::array<float, 256> kLinearFromSrgb = srgbTable();
-
-std::size_t wrapped(double at, std::uint32_t size, std::uint32_t mode) {
-  const double n = size;
-  if (mode == kClampToEdge) return static_cast<std::size_t>(std::clamp(at, 0.0, n - 1.0));
-  const double period = mode == kMirroredRepeat ? 2.0 * n : n;
-  double texel = at - period * std::floor(at / period);
-  if (texel >= n) texel = period - 1.0 - texel;
-  return static_cast<std::size_t>(std::clamp(texel, 0.0, n - 1.0));
-}
-
-}  // namespace
 
 Result<Textures> Textures::load(const Scene& scene) {
   Textures out;
@@ -62,38 +36,16 @@ Result<Textures> Textures::load(const Scene& scene) {
   return out;
 }
 
-template <typename Decode>
-glm::vec4 Textures::lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const {
-  if (ref.texture < 0) return glm::vec4(1.0f);
-  const auto index = static_cast<std::size_t>(ref.texture);
-  if (!images_[index]) return glm::vec4(1.0f);
-  const gltf::Texture& texture = textures_[index];
-  const DecodedImage& image = *images_[index];
-  const glm::vec2 turned = ref.apply(uv);
-  const bool nearest = texture.sampler.mag_filter == kNearest;
-  const double x = std::clamp(double{turned.x} * image.width, -1e12, 1e12) - (nearest ? 0.0 : 0.5);
-  const double y = std::clamp(double{turned.y} * image.height, -1e12, 1e12) - (nearest ? 0.0 : 0.5);
-  const double left = std::floor(x), top = std::floor(y);
-  const auto texel = [&](double column, double row) {
-    const std::size_t at = wrapped(row, image.height, texture.sampler.wrap_t) * image.width +
-                           wrapped(column, image.width, texture.sampler.wrap_s);
-    return decode(&image.rgba[4 * at]);
-  };
-  if (nearest) return texel(left, top);
-  const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
-  return glm::mix(glm::mix(texel(left, top), texel(left + 1.0, top), fx),
-                  glm::mix(texel(left, top + 1.0), texel(left + 1.0, top + 1.0), fx), fy);
-}
-
 glm::vec4 Textures::color(const gltf::TextureRef& ref, const glm::vec2& uv) const {
-  return lookUp(ref, uv, [](const std::uint8_t* p) {
-    return glm::vec4(kLinearFromSrgb[p[0]], kLinearFromSrgb[p[1]], kLinearFromSrgb[p[2]],
-                     static_cast<float>(p[3]) / 255.0f);
-  });
+  const auto image = imageOf(ref);
+  return image ? sampleImage(*image, textures_[static_cast<std::size_t>(ref.texture)].sampler, ref.apply(uv))
+               : glm::vec4(1.0f);
 }
 
 glm::vec4 Textures::data(const gltf::TextureRef& ref, const glm::vec2& uv) const {
-  return lookUp(ref, uv, [](const std::uint8_t* p) { return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f; });
+  const auto image = imageOf(ref);
+  return image ? sampleData(*image, textures_[static_cast<std::size_t>(ref.texture)].sampler, ref.apply(uv))
+               : glm::vec4(1.0f);
 }
 
 namespace {
@@ -122,7 +74,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   auto textures = Textures::load(scene);
   if (!textures) return failAgain(std::move(textures.error()));
   out.textures_ = std::move(*textures);
-  std::vector<std::shared_ptr<const MeasuredReflection>> measured(scene.brdfs.size());
+  std::vector<std::shared_ptr<const Brdf>> measured(scene.brdfs.size());
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
@@ -138,7 +90,11 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
         if (const std::int32_t brdf = surface.material.brdf; brdf >= 0 && !surface.material.isDiffuse()) {
           const auto index = static_cast<std::size_t>(brdf);
-          if (!measured[index]) measured[index] = std::make_shared<MeasuredReflection>(scene.brdfs[index]);
+          if (!measured[index]) {
+            auto made = makeMeasured(scene.brdfs[index]);
+            if (!made) return failAgain(std::move(made.error()));
+            measured[index] = std::move(*made);
+          }
           surface.measured = measured[index];
         }
       } else {
@@ -179,9 +135,9 @@ void Surfaces::buildTables() {
     const gltf::Material& material = surface.material;
     const bool bare = material.metallic >= 1.0f && material.metallic_roughness_texture.texture < 0;
     if (material.isDiffuse() || surface.measured || bare) continue;
-    if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
-    if (material.anisotropy > 0.0f && anisotropic_.empty())
-      anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
+    if (round_.values.empty()) round_ = albedoTable(/*anisotropic=*/false);
+    if (material.anisotropy > 0.0f && anisotropic_.values.empty())
+      anisotropic_ = albedoTable(/*anisotropic=*/true);
   }
 }
 
@@ -298,7 +254,7 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   out.world_from_local = {t, glm::cross(point.shading, t), point.shading};
   out.view = liftedView(out.toLocal(glm::normalize(to_eye)));
   if ((out.measured = surfaces_[hit.surface].measured.get())) {
-    out.alpha = glm::vec2(out.measured->alpha());
+    out.alpha = glm::vec2(static_cast<float>(out.measured->focus({}).alpha_t));
     out.specular_share = 0.5f;
     return out;
   }
@@ -315,8 +271,10 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   out.f0 = glm::mix(dielectric, point.albedo, metal);
   out.f90 = glm::mix(specular, 1.0f, metal);
   if (metal >= 1.0f) return out;  // a metal has no diffuse part
-  const glm::vec2 parts = (strength > 0.0f ? anisotropic_ : round_).at(out.view, roughness, strength);
-  const glm::vec3 reflected = out.f0 * parts.x + out.f90 * parts.y;
+  std::array<float, 2> parts;
+  bundle::lookUpStored(strength > 0.0f ? anisotropic_ : round_, {out.view.z, out.view.x, out.view.y},
+                       roughness, strength, parts);
+  const glm::vec3 reflected = out.f0 * parts[0] + out.f90 * parts[1];
   const float most = std::max({reflected.r, reflected.g, reflected.b});
   out.diffuse = (1.0f - metal) * std::max(1.0f - most, 0.0f) * point.albedo;
   const float rest = std::max({out.diffuse.r, out.diffuse.g, out.diffuse.b});

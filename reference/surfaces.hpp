@@ -22,10 +22,7 @@
 
 namespace lambent::baker::reference {
 
-// Samples textures for rays: bilinear at full resolution with the sampler's wrap modes, from the decoded
-// images. Colours are returned linear, data (normals) as stored. Texel centres are at half-integers, and v =
-// 0 is the top.
-
+// Samples the decoded images of textures for rays (sampleImage).
 class Textures {
  public:
   // Decodes the images that materials of `scene` use. Errors name the image.
@@ -37,8 +34,9 @@ class Textures {
   glm::vec4 data(const gltf::TextureRef& ref, const glm::vec2& uv) const;
 
  private:
-  template <typename Decode>
-  glm::vec4 lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const;
+  const DecodedImage* imageOf(const gltf::TextureRef& ref) const {
+    return ref.texture < 0 ? nullptr : images_[static_cast<std::size_t>(ref.texture)].get();
+  }
 
   std::vector<gltf::Texture> textures_;
   std::vector<std::shared_ptr<const DecodedImage>> images_;  // by texture; null: none
@@ -50,7 +48,7 @@ inline float largest(const glm::vec3& v) {
 
 struct Surface {
   gltf::Material material;
-  std::shared_ptr<const MeasuredReflection> measured;  // null: GGX or diffuse
+  std::shared_ptr<const Brdf> measured;  // null: GGX or diffuse
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(n, t) * w * handedness
@@ -127,7 +125,7 @@ class Surfaces {
   std::vector<glm::vec4> tangents_;  // w = 0 if the file has none
   std::vector<glm::uvec3> triangles_;
   Textures textures_;
-  AlbedoTable round_, anisotropic_;
+  bundle::BrdfTable round_, anisotropic_;  // albedoTable(); without values if not needed
 };
 
 }  // namespace lambent::baker::reference

@@ -19,7 +19,6 @@ sky="--light sun:70,48,12,60,54,44 --light constant:0.3,0.42,0.6"
 draw 01-final gallery $evening
 draw 02-irradiance gallery $evening --view irradiance
 draw 03-transfer-dc gallery --light constant:1,1,1 --view transfer-dc
-draw 04-transfer-band-1 gallery --light constant:1,1,1 --view transfer-band:1
 draw 05-error flight --light constant:1,1,1 --view error
 draw 06-clusters gallery --light constant:1,1,1 --view clusters
 draw 07-normals gallery --light constant:1,1,1 --view normals
@@ -27,8 +26,8 @@ draw 08-wireframe flight $sky --view wireframe
 camera=orbit:25,14,0.8,25
 draw 09-light-samples playroom $day --overlay light-probes
 camera=main
-draw 10-neighborhoods playroom $day --overlay neighborhoods:y,0.3
+draw 10-neighborhoods playroom $day --overlay neighborhoods
 draw 11-groups-lights playroom $day --overlay groups,lights
-draw 12-volumes flight $sky --overlay volumes,neighborhoods:y,0.4
+draw 12-volumes flight $sky --overlay volumes,neighborhoods
 montage "$work"/[01][0-9]-*.png -tile 3x4 -geometry +3+3 -background '#1b1b1b' "$work/sheet.png"
 convert "$work/sheet.png" -quality 86 "$out"

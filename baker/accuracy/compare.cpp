@@ -1,14 +1,19 @@
 #include "baker/accuracy/compare.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 
 #include "runtime/base/finite.hpp"
 #include "runtime/spec/rec709.hpp"
@@ -46,11 +51,13 @@ struct Sums {
   double relativeRms() const { return std::sqrt(std::max(squares, 0.0) / energy); }
 };
 
-}  // namespace
+// Pixels that all pictures cover, and that one covers and that are sky in another.
+struct Pixels {
+  std::vector<std::uint32_t> at, apart;
+};
 
-Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
-                                     const spec::RgbaImage* reference2, const std::string& subject) {
-  const spec::RgbaImage& second = reference2 ? *reference2 : reference;
+Result<PictureError> compare(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                             const spec::RgbaImage& second, const std::string& subject, Pixels& pixels) {
   for (const spec::RgbaImage* other : {&reference, &second})
     if (other->width != picture.width || other->height != picture.height)
       return fail(subject,
@@ -63,12 +70,13 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   glm::dvec3 difference_sum(0.0), reference_sum(0.0);
   std::vector<double> differences;
   const bool depths = haveDepths({&picture, &reference, &second});
-  for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
     const auto [least, most] = std::minmax({picture.texels[i].w, reference.texels[i].w, second.texels[i].w});
     // A pixel of an outline that is just above the bound in one picture and just below in another does not
     // count.
-    error.pixels_apart += most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage;
+    if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage) pixels.apart.push_back(i);
     if (!(least >= spec::kLeastCoverage)) continue;
+    pixels.at.push_back(i);
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
     if (!isFinite(x) || !isFinite(a) || !isFinite(b))
       return fail(
@@ -93,6 +101,7 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
     return fail(subject, "has a black reference", "use a light that reaches the scene");
 
   error.pixels = all.pixels;
+  error.pixels_apart = pixels.apart.size();
   error.relative_rms = all.relativeRms();
   if (depths) error.pixels_of_other_surfaces = all.pixels - same_surface.pixels;
   if (same_surface.energy > 0.0) error.same_surface_rms = same_surface.relativeRms();
@@ -106,6 +115,14 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   error.percentile_99 = percentile(differences, 0.99) / scale;
   error.largest = *std::max_element(differences.begin(), differences.end()) / scale;
   return error;
+}
+
+}  // namespace
+
+Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                     const spec::RgbaImage* reference2, const std::string& subject) {
+  Pixels pixels;
+  return compare(picture, reference, reference2 ? *reference2 : reference, subject, pixels);
 }
 
 Result<spec::RgbaImage> shrunk(const spec::RgbaImage& picture, std::uint32_t n, const std::string& subject) {
@@ -147,38 +164,22 @@ constexpr std::array<Color, 11> kColors = {{{5, 48, 97},
 constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
 constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
 
-struct Pixels {
-  std::vector<float> values;  // values of the map in pixels that all pictures cover
-  std::vector<std::uint32_t> at, apart;
-};
-
-// Counts pixels as comparePictures() does.
-Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const spec::RgbaImage& b) {
-  Pixels out;
-  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
-    const auto [least, most] = std::minmax({picture.texels[i].w, a.texels[i].w, b.texels[i].w});
-    if (least >= spec::kLeastCoverage)
-      out.at.push_back(i);
-    else if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage)
-      out.apart.push_back(i);
-  }
-  return out;
-}
-
-void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaImage& a,
-             const spec::RgbaImage& b) {
+// Returns the values of the map in pixels that all pictures cover.
+std::vector<float> valuesAt(std::span<const std::uint32_t> pixels, const spec::RgbaImage& picture,
+                            const spec::RgbaImage& a, const spec::RgbaImage& b) {
   const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
   double squares = 0.0;
-  for (const std::uint32_t i : pixels.at) {
+  for (const std::uint32_t i : pixels) {
     const double y = double{spec::luminanceOf(mean(i))};
     squares += y * y;
   }
   const auto scale =
-      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.at.size()))), 1e-30f);
-  pixels.values.reserve(pixels.at.size());
-  for (const std::uint32_t i : pixels.at)
-    pixels.values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
-                            std::max(spec::luminanceOf(mean(i)), kFloor * scale));
+      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.size()))), 1e-30f);
+  std::vector<float> values;
+  for (const std::uint32_t i : pixels)
+    values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
+                     std::max(spec::luminanceOf(mean(i)), kFloor * scale));
+  return values;
 }
 
 // Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
@@ -220,16 +221,16 @@ Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::Rgba
                                 const std::string& subject) {
   if (range && !(*range > 0.0 && std::isfinite(*range)))
     return fail("--heat-range", fmt::format("{} is not a range", *range), "give a share above 0, as 0.1");
-  auto figures = comparePictures(picture, reference, reference2, subject);
-  if (!figures) return failAgain(std::move(figures.error()));
   const spec::RgbaImage& second = reference2 ? *reference2 : reference;
-  Pixels pixels = pixelsOf(picture, reference, second);
-  measure(pixels, picture, reference, second);
+  Pixels pixels;
+  auto figures = compare(picture, reference, second, subject, pixels);
+  if (!figures) return failAgain(std::move(figures.error()));
+  const std::vector<float> values = valuesAt(pixels.at, picture, reference, second);
   Difference out{.figures = *figures,
                  .heat = {.width = picture.width,
                           .height = picture.height,
                           .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
-                 .range = range ? *range : rangeOf(pixels.values)};
+                 .range = range ? *range : rangeOf(values)};
   // All pixels share one table, so that colours are interpolated once.
   constexpr int kSteps = 512;
   std::array<Color, kSteps + 1> table;
@@ -239,11 +240,147 @@ Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::Rgba
   for (std::uint32_t i = 0; i < picture.texels.size(); ++i) put(out.heat, i, kUncovered);
   for (const std::uint32_t i : pixels.apart) put(out.heat, i, kApart);
   for (std::size_t p = 0; p < pixels.at.size(); ++p) {
-    const double share = std::clamp(double{pixels.values[p]} / out.range, kLeast, 1.0);
+    const double share = std::clamp(double{values[p]} / out.range, kLeast, 1.0);
     put(out.heat, pixels.at[p],
         table[static_cast<std::size_t>(std::lround((share - kLeast) / (1.0 - kLeast) * kSteps))]);
   }
   return out;
+}
+
+namespace {
+
+constexpr float kWhite = 100.0f;    // cd/m²
+constexpr double kFieldDeg = 45.0;  // of the picture's width
+constexpr std::size_t kLevels = 8;  // of blurring
+constexpr std::size_t kContrasts = kLevels - 2;
+constexpr float kLeast = 1e-5f;  // luminance, against division by zero
+
+// Returns the sensitivity to a contrast of so many cycles per degree at this luminance (Barten 1989).
+float sensitivity(float cycles_per_degree, float luminance) {
+  const float a = 440.0f * std::pow(1.0f + 0.7f / luminance, -0.2f);
+  const float b = 0.3f * std::pow(1.0f + 100.0f / luminance, 0.15f);
+  const float f = cycles_per_degree;
+  return a * f * std::exp(-b * f) * std::sqrt(1.0f + 0.06f * std::exp(b * f));
+}
+
+// Returns the smallest difference of luminance that an adapted eye can tell (Ward Larson et al. 1997).
+float threshold(float luminance) {
+  const float l = std::log10(luminance);
+  if (l < -3.94f) return std::pow(10.0f, -2.86f);
+  if (l < -1.44f) return std::pow(10.0f, std::pow(0.405f * l + 1.6f, 2.18f) - 2.86f);
+  if (l < -0.0184f) return std::pow(10.0f, l - 0.395f);
+  if (l < 1.9f) return std::pow(10.0f, std::pow(0.249f * l + 0.65f, 2.7f) - 0.72f);
+  return std::pow(10.0f, l - 1.255f);
+}
+
+// Returns by how much a contrast raises the threshold for others of its frequency (Daly 1993).
+float masking(float contrast) {
+  const float a = std::pow(392.498f * contrast, 0.7f), b = std::pow(0.0153f * a, 4.0f);
+  return std::pow(1.0f + b, 0.25f);
+}
+
+// Returns a and b of CIE L*a*b* under the white of Rec. 709.
+glm::vec2 chromaOf(const glm::vec3& xyz) {
+  const auto root = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116.0f; };
+  const float x = root(xyz.x / 0.9505f), y = root(xyz.y), z = root(xyz.z / 1.0891f);
+  return {500.0f * (x - y), 200.0f * (y - z)};
+}
+
+using Plane = std::vector<float>;
+
+// An eye gets this of a picture: luminance in cd/m², ever more blurred, and chroma.
+struct Seen {
+  std::array<Plane, kLevels> luminance;
+  std::vector<glm::vec2> chroma;
+};
+
+// Blurs by the kernel of Burt and Adelson (1983) along one axis, mirrored at the borders.
+Plane blurred(const Plane& in, int width, int height, int dx, int dy) {
+  constexpr std::array kKernel = {0.05f, 0.25f, 0.4f, 0.25f, 0.05f};
+  const auto mirrored = [](int i, int size) {
+    if (i < 0) i = -i;
+    if (i >= size) i = 2 * size - 2 - i;
+    return std::clamp(i, 0, size - 1);
+  };
+  Plane out(in.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      float sum = 0.0f;
+      for (int k = -2; k <= 2; ++k)
+        sum +=
+            kKernel[static_cast<std::size_t>(k + 2)] *
+            in[static_cast<std::size_t>(mirrored(y + k * dy, height) * width + mirrored(x + k * dx, width))];
+      out[static_cast<std::size_t>(y * width + x)] = sum;
+    }
+  return out;
+}
+
+Seen seen(const spec::Rgba8Image& picture) {
+  const glm::mat3 xyz_from_rgb(glm::vec3(0.4124f, 0.2126f, 0.0193f), glm::vec3(0.3576f, 0.7152f, 0.1192f),
+                               glm::vec3(0.1805f, 0.0722f, 0.9505f));
+  const auto width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+  Seen out;
+  for (std::size_t i = 0; i < picture.texels.size(); i += 4) {
+    glm::vec3 rgb;
+    for (int c = 0; c < 3; ++c)
+      rgb[c] =
+          spec::linearFromSrgb(static_cast<float>(picture.texels[i + static_cast<std::size_t>(c)]) / 255.0f);
+    const glm::vec3 xyz = xyz_from_rgb * rgb;
+    out.luminance.front().push_back(kWhite * xyz.y);
+    out.chroma.push_back(chromaOf(xyz));
+  }
+  for (std::size_t level = 1; level < kLevels; ++level)
+    out.luminance[level] =
+        blurred(blurred(out.luminance[level - 1], width, height, 1, 0), width, height, 0, 1);
+  return out;
+}
+
+float contrastOf(const Seen& picture, std::size_t level, std::size_t pixel) {
+  return std::abs(picture.luminance[level][pixel] - picture.luminance[level + 1][pixel]) /
+         std::max(picture.luminance[level + 2][pixel], kLeast);
+}
+
+}  // namespace
+
+Result<double> visibleShare(const spec::Rgba8Image& picture, const spec::Rgba8Image& reference,
+                            const std::string& subject) {
+  if (picture.width != reference.width || picture.height != reference.height)
+    return fail(subject,
+                fmt::format("is {} x {}, the reference {} x {}", picture.width, picture.height,
+                            reference.width, reference.height),
+                "draw both with the same --size");
+  if (picture.texels.empty()) return 0.0;
+  const Seen a = seen(picture), b = seen(reference);
+  // A screen is flat, so degrees are counted at its middle.
+  const double degrees =
+      2.0 * std::tan(0.5 * kFieldDeg * std::numbers::pi / 180.0) * 180.0 / std::numbers::pi;
+  const auto adapted = std::min(kLevels - 1, static_cast<std::size_t>(std::ceil(std::log2(degrees))));
+  std::array<float, kContrasts> frequency{},
+      elevation{};  // cycles per degree, and how much harder they are to see
+  for (std::size_t i = 0; i < kContrasts; ++i) {
+    frequency[i] = static_cast<float>(0.5 * static_cast<double>(picture.width) / degrees / std::exp2(i));
+    elevation[i] = sensitivity(3.248f, kWhite) / sensitivity(frequency[i], kWhite);
+  }
+  const std::size_t pixels = a.chroma.size();
+  std::size_t visible = 0;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const float adaptation =
+        std::max(0.5f * (a.luminance[adapted][pixel] + b.luminance[adapted][pixel]), kLeast);
+    float sum = 0.0f, raised = 0.0f;
+    for (std::size_t i = 0; i < kContrasts; ++i) {
+      const float contrast = std::max(contrastOf(a, i, pixel), contrastOf(b, i, pixel));
+      sum += contrast;
+      raised += contrast * elevation[i] * masking(contrast * sensitivity(frequency[i], adaptation));
+    }
+    const float factor = std::clamp(raised / std::max(sum, kLeast), 1.0f, 10.0f);
+    const float difference = std::abs(a.luminance.front()[pixel] - b.luminance.front()[pixel]);
+    // Eyes see colours only where there is enough light.
+    const float colour = std::min(adaptation / 10.0f, 1.0f);
+    const glm::vec2 chroma = a.chroma[pixel] - b.chroma[pixel];
+    visible +=
+        difference > factor * threshold(adaptation) || glm::dot(chroma, chroma) * colour * colour > factor;
+  }
+  return static_cast<double>(visible) / static_cast<double>(pixels);
 }
 
 }  // namespace lambent::baker

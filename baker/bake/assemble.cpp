@@ -7,7 +7,7 @@
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 
@@ -22,6 +22,13 @@ std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
 }
 
 class Assembler {
+  // The coded transfer of a cell of a group, and the bounds that it was coded with.
+  struct Cell {
+    std::size_t group, index;
+    const std::vector<CodedTransfer>& coded;
+    float bound, glossy_bound;
+  };
+
  public:
   Assembler(const SceneBake& bake, BakeReport& report)
       : scene_(bake.scene), plan_(bake.plan), options_(bake.options), tables_(bake.tables), report_(report) {}
@@ -69,7 +76,7 @@ class Assembler {
   void addGroups(const std::vector<BakedGroup>& baked) {
     for (std::size_t g = 0; g < baked.size(); ++g) {
       const RigidGroup& planned = plan_.groups[g];
-      bundle::Group group;
+      bundle::Group& group = description_.groups.emplace_back();
       group.name = planned.name;
       group.node = planned.root;
       group.rest_translation = planned.rest_translation;
@@ -86,8 +93,11 @@ class Assembler {
       group.light_probes.clear();
       for (const glm::vec3& point : baked[g].light_probes.points)
         group.light_probes.push_back(origin + point);
+      const SurfaceCells& surfaces = baked[g].surfaces;
       for (std::size_t c = 0; c < baked[g].samples.cells.size(); ++c) {
         const SampleCell& cell = baked[g].samples.cells[c];
+        cells_.push_back({g, group.cells.size(), surfaces.cells[c], surfaces.figures.codes_bound,
+                          surfaces.figures.glossy_codes_bound});
         group.cells.push_back({.first_sample = cell.first,
                                .sample_count = cell.count,
                                .bounds_min = origin + cell.bounds_min,
@@ -98,7 +108,6 @@ class Assembler {
       group.picture_error = baked[g].surfaces.figures.picture_error;
       if (baked[g].volume) addVolume(*baked[g].volume, planned, group);
       if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
-      description_.groups.push_back(std::move(group));
       for (std::size_t d = 0; d < planned.draws.size(); ++d)
         addDraw(planned.draws[d], static_cast<std::uint32_t>(g), d, baked[g]);
     }
@@ -115,38 +124,22 @@ class Assembler {
   // wanted first lies first.
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
-    const auto forAll = [&](const auto& visit) {
-      for (std::size_t g = 0; g < baked.size(); ++g) {
-        auto stored = description_.groups[g].cells.begin();
-        const auto visitCell = [&](const std::vector<CodedTransfer>& coded) {
-          for (std::size_t t = 0; t < coded.size(); ++t) visit(coded[t], stored->transfers, t);
-          ++stored;
-        };
-        for (const auto& coded : baked[g].surfaces.cells) visitCell(coded);
-        if (baked[g].volume)
-          for (const CodedCell& cell : baked[g].volume->cells) visitCell(cell.transfers);
-        if (baked[g].neighborhood)
-          for (const CodedCell& cell : baked[g].neighborhood->cells) visitCell(cell.transfers);
-      }
+    const auto storedOf = [&](const Cell& cell) -> std::vector<bundle::CellTransfer>& {
+      return description_.groups[cell.group].cells[cell.index].transfers;
     };
-    forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
-      stored.push_back(addCodebook(coded));
-      most_planes = std::max(most_planes, coded.planes.size());
-    });
-    for (std::size_t g = 0; g < baked.size(); ++g)
-      for (std::size_t c = 0; c < baked[g].surfaces.cells.size(); ++c)
-        for (bundle::CellTransfer& stored : description_.groups[g].cells[c].transfers)
-          if (const float bound = stored.shape.beyondDiffuse() ? baked[g].surfaces.figures.glossy_codes_bound
-                                                               : baked[g].surfaces.figures.codes_bound;
-              bound > 0.0f)
-            stored.error_bound = bound;
+    for (const Cell& cell : cells_)
+      for (const CodedTransfer& coded : cell.coded) {
+        storedOf(cell).push_back(addCodebook(coded, cell));
+        most_planes = std::max(most_planes, coded.planes.size());
+      }
     addBrdfTables();
     addLightWeights(baked);
     addProxies(baked);
     for (std::size_t j = 0; j < most_planes; ++j)
-      forAll([&](const CodedTransfer& coded, auto& stored, std::size_t t) {
-        if (j < coded.planes.size()) stored[t].planes.push_back(addPlane(coded.planes[j], j));
-      });
+      for (const Cell& cell : cells_)
+        for (std::size_t t = 0; t < cell.coded.size(); ++t)
+          if (const auto& planes = cell.coded[t].planes; j < planes.size())
+            storedOf(cell)[t].planes.push_back(addPlane(planes[j], j));
     addImportance(baked, kFirstPlanePriority + static_cast<std::uint32_t>(most_planes));
   }
 
@@ -181,6 +174,8 @@ class Assembler {
   void addGridCells(const std::vector<CodedCell>& cells, transfer::Domain domain, std::uint32_t light_probe,
                     bundle::Group& group) {
     for (const CodedCell& cell : cells) {
+      cells_.push_back({description_.groups.size() - 1, group.cells.size(), cell.transfers,
+                        options_.effectiveErrorBound(), options_.effectiveGlossyErrorBound()});
       group.cells.push_back({.first_sample = group.sample_count,
                              .sample_count = cell.count,
                              .bounds_min = cell.bounds_min,
@@ -225,7 +220,7 @@ class Assembler {
   }
 
   // Adds all of a cell's transfer but the planes, which come after the codebooks of all cells.
-  bundle::CellTransfer addCodebook(const CodedTransfer& coded) {
+  bundle::CellTransfer addCodebook(const CodedTransfer& coded, const Cell& cell) {
     bundle::CellTransfer transfer;
     transfer.shape = coded.shape;
     transfer.clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
@@ -236,8 +231,7 @@ class Assembler {
       transfer.cluster_ids = static_cast<std::int32_t>(addTransferPayload(
           bundle::PayloadType::ClusterIds, transfer::encodeClusterIds(coded.cluster_of, transfer.clusters),
           kCodebookPriority));
-    transfer.error_bound =
-        coded.shape.beyondDiffuse() ? options_.effectiveGlossyErrorBound() : options_.effectiveErrorBound();
+    transfer.error_bound = coded.shape.beyondDiffuse() ? cell.glossy_bound : cell.bound;
     transfer.error = coded.error;
     return transfer;
   }
@@ -280,9 +274,9 @@ class Assembler {
 
   void addProxies(const std::vector<BakedGroup>& baked) {
     for (std::size_t g = 0; g < baked.size(); ++g) {
-      if (baked[g].proxy.levels.empty()) continue;
-      description_.groups[g].proxy = static_cast<std::int32_t>(addPayload(
-          bundle::PayloadType::CaptureProxy, bundle::encodeCaptureProxy(baked[g].proxy), kCodebookPriority));
+      if (baked[g].proxy.bytes.empty()) continue;
+      description_.groups[g].proxy = static_cast<std::int32_t>(
+          addPayload(bundle::PayloadType::CaptureProxy, baked[g].proxy.bytes, kCodebookPriority));
       report_.proxy_bytes += blobs_.back().size();
     }
   }
@@ -340,6 +334,7 @@ class Assembler {
   BakeReport& report_;
   bundle::Description description_;
   std::vector<bundle::Blob> blobs_;
+  std::vector<Cell> cells_;
 };
 
 }  // namespace

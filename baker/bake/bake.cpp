@@ -12,7 +12,6 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/volume/volume.hpp"
@@ -98,6 +97,7 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
   baked.samples.positions.push_back(center);
   baked.samples.cells.push_back({0, 1, center, center, SampleKind::Diffuse});
   baked.surfaces.cells.push_back({openTransfer(options.order, 1)});
+  baked.surfaces.figures.codes_bound = options.effectiveErrorBound();
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
   return baked;
 }

@@ -12,7 +12,7 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
@@ -20,6 +20,7 @@
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/samples.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
@@ -33,78 +34,64 @@ constexpr double kShareOfBound = 1.0 / 3.0;
 // more points than others, and lie close around the body, where its contact with what it stands on shows.
 constexpr double kBoundByHand = 0.03;
 
-void take(const Around& around, BakedAround baked, BakedGroup& out) {
-  BakeReport& report = around.report;
-  const std::string& name = around.bake.plan.groups[around.group].name;
+}  // namespace
+
+Result<void> bakeAround(const Around& around, const BakeContext& light,
+                        const std::function<Result<std::unique_ptr<Body>>()>& make, BakedGroup& out,
+                        BakeReport& report) {
+  const auto& [bake, group, origin, bounds, rays] = around;
+  const PlannedNeighborhood& plan = bake.plan.neighborhoods[group];
+  if (!plan.baked) return {};
+  const BakeOptions& options = bake.options;
+  NeighborhoodSettings settings{.placement = {.body = bounds,
+                                              .receivers = {},
+                                              .size = plan.size,
+                                              .by_length = options.neighborhood_grid,
+                                              .few_points = !plan.asked && !plan.matrices,
+                                              .extent = plan.extent},
+                                .facing = plan.receivers_face,
+                                .origin = origin,
+                                .matrices = plan.matrices,
+                                .rays = rays,
+                                .fit_between_points = true,
+                                .coding = {.bound = kShareOfBound * double{options.effectiveErrorBound()}}};
+  if (!plan.receivers.empty() && !plan.by_hand)
+    settings.placement.receivers = Box3{plan.receivers_min - origin, plan.receivers_max - origin};
+  if (plan.by_hand) settings.placement.bound = kBoundByHand;
+
+  const std::optional<Box3>& receivers = settings.placement.receivers;
+  KeyMaker key = KeyMaker::ofStage("neighborhood");
+  key.add(light.key, origin, std::uint64_t{rays}, plan.asked, plan.by_hand, plan.matrices, plan.size,
+          plan.extent, receivers.has_value());
+  if (receivers) key.add(receivers->low).add(receivers->high);
+  key.add(plan.receivers_face, options.neighborhood_grid, options.effectiveErrorBound());
+  const BakeContext context = light.keyed(light.keeps() ? key.key() : Key{});
+  BakedAround baked;
+  if (!findNeighborhood(context, baked)) {
+    const auto body = make();
+    if (!body) return failAgain(body.error());
+    auto made = bakeNeighborhood(**body, settings, context);
+    if (!made) return bake.stopped();
+    baked = std::move(*made);
+  }
+  const std::string& name = bake.plan.groups[group].name;
   if (!baked.grid) {
     report.notices.push_back(fmt::format(
         "rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked", name));
-    return;
+    return {};
   }
   out.neighborhood = std::move(baked.grid);
   const NeighborhoodFigures& figures = baked.figures;
   report.rays += figures.rays;
   report.rays_kept += figures.rays_kept;
   report.neighborhoods.push_back({.name = name,
-                                  .size = figures.size,
-                                  .bounds_min = figures.bounds_min,
-                                  .bounds_max = figures.bounds_max,
+                                  .size = out.neighborhood->size,
+                                  .bounds_min = out.neighborhood->bounds_min,
+                                  .bounds_max = out.neighborhood->bounds_max,
                                   .inside_points = figures.inside_points,
                                   .error = figures.error,
                                   .change_error = figures.change_error});
-}
-
-// Returns the bounds of the surfaces that come within reach, relative to the origin.
-std::optional<Box3> receiversOf(const Around& around) {
-  const PlannedNeighborhood& plan = around.plan();
-  if (plan.receivers.empty() || plan.by_hand) return std::nullopt;
-  return Box3{plan.receivers_min - around.origin, plan.receivers_max - around.origin};
-}
-
-}  // namespace
-
-BakeContext contextOf(const Around& around, const BakeContext& body) {
-  if (!body.keeps()) return body;
-  const PlannedNeighborhood& plan = around.plan();
-  const BakeOptions& options = around.bake.options;
-  const std::optional<Box3> receivers = receiversOf(around);
-  KeyMaker key = KeyMaker::ofStage("neighborhood");
-  key.add(body.key, around.origin, std::uint64_t{around.rays}, plan.asked, plan.by_hand, plan.matrices,
-          plan.size, plan.extent, receivers.has_value());
-  if (receivers) key.add(receivers->low).add(receivers->high);
-  key.add(plan.receivers_face, options.neighborhood_grid, options.effectiveErrorBound());
-  return body.keyed(key.key());
-}
-
-bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
-  BakedAround found;
-  if (!findNeighborhood(context, found)) return false;
-  take(around, std::move(found), out);
-  return true;
-}
-
-bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
-                BakedGroup& out) {
-  const PlannedNeighborhood& plan = around.plan();
-  const BakeOptions& options = around.bake.options;
-  NeighborhoodSettings settings;
-  settings.origin = around.origin;
-  settings.matrices = plan.matrices;
-  settings.rays = around.rays;
-  settings.placement.body = bounds;
-  if (const auto receivers = receiversOf(around)) settings.placement.receivers = *receivers;
-  settings.facing = plan.receivers_face;
-  settings.placement.size = plan.size;
-  settings.placement.extent = plan.extent;
-  settings.placement.by_length = options.neighborhood_grid;
-  if (plan.by_hand) settings.placement.bound = kBoundByHand;
-  settings.placement.few_points = !plan.asked && !plan.matrices;
-  settings.fit_between_points = true;
-  settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
-  auto baked = bakeNeighborhood(body, settings, context);
-  if (!baked) return false;
-  take(around, std::move(*baked), out);
-  return true;
+  return {};
 }
 
 template <>
@@ -114,31 +101,7 @@ template <>
 inline constexpr auto kKeptMembers<LightProbes> = std::tuple(&LightProbes::points, &LightProbes::cells);
 
 template <>
-inline constexpr auto kKeptMembers<bundle::ProxyTriangle> = std::tuple(
-    &bundle::ProxyTriangle::vertices, &bundle::ProxyTriangle::front_only, &bundle::ProxyTriangle::emission,
-    &bundle::ProxyTriangle::light, &bundle::ProxyTriangle::first_entry, &bundle::ProxyTriangle::entry_count);
-template <>
-inline constexpr auto kKeptMembers<bundle::ProxyEntry> = std::tuple(&bundle::ProxyEntry::sample,
-                                                                    &bundle::ProxyEntry::reflectance);
-template <>
-inline constexpr auto kKeptMembers<bundle::ProxyLevel> = std::tuple(&bundle::ProxyLevel::first_triangle,
-                                                                    &bundle::ProxyLevel::triangle_count,
-                                                                    &bundle::ProxyLevel::error_m);
-template <>
-inline constexpr auto kKeptMembers<bundle::PatchTriangle> = std::tuple(&bundle::PatchTriangle::vertices,
-                                                                       &bundle::PatchTriangle::front_only,
-                                                                       &bundle::PatchTriangle::albedo,
-                                                                       &bundle::PatchTriangle::detail);
-template <>
-inline constexpr auto kKeptMembers<bundle::PatchSurface> = std::tuple(&bundle::PatchSurface::positions,
-                                                                      &bundle::PatchSurface::triangles,
-                                                                      &bundle::PatchSurface::error_m);
-template <>
-inline constexpr auto kKeptMembers<bundle::CaptureProxy> = std::tuple(&bundle::CaptureProxy::positions,
-                                                                      &bundle::CaptureProxy::triangles,
-                                                                      &bundle::CaptureProxy::entries,
-                                                                      &bundle::CaptureProxy::levels,
-                                                                      &bundle::CaptureProxy::patches);
+inline constexpr auto kKeptMembers<BakedProxy> = std::tuple(&BakedProxy::bytes, &BakedProxy::triangles);
 
 template <>
 inline constexpr auto kKeptMembers<SurfaceFigures> = std::tuple(
@@ -262,7 +225,8 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
   const bool chooses = options.picture_bound > 0.0f && options.error_bound == 0.0f;
   std::optional<float> bound = options.effectiveErrorBound();
   if (chooses)
-    if (const auto shown = shownBy(group, light, nullptr)) bound = codesBound(*shown, options.picture_bound);
+    if (const auto shown = measurePictureError(group, light, nullptr))
+      bound = codesBound(*shown, options.picture_bound);
   for (int codings = 1; bound; ++codings) {
     out.figures.codes_bound = *bound;
     out.figures.glossy_codes_bound = chooses ? glossyCodesBound(*bound) : options.effectiveGlossyErrorBound();
@@ -270,7 +234,7 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
     out.figures.worst_glossy_error = light.figures.worst_glossy_error;
     if (group.anyGlossy() && !code(/*glossy=*/true)) return std::nullopt;
     if (!code(/*glossy=*/false)) return std::nullopt;
-    auto& shown = out.figures.picture_error = shownBy(group, light, &out.cells);
+    auto& shown = out.figures.picture_error = measurePictureError(group, light, &out.cells);
     bound.reset();
     if (chooses && shown && codings < kMostCodings)
       bound = nextCodesBound(out.figures.codes_bound, *shown, options.picture_bound);
@@ -291,15 +255,20 @@ LightProbes lightProbesOf(const GroupScene& group, const BakeContext& context) {
 }
 
 // Colours and rays are needed only if the proxy was not found in the cache.
-Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& context) {
-  bundle::CaptureProxy proxy;
+Result<BakedProxy> proxyOf(GroupScene& group, const BakeContext& context) {
+  BakedProxy proxy;
   Result<void> loaded;
   findOrMake(context.keyed(group.keys.proxy), proxy, [&] {
     loaded = group.loadColors();
     if (loaded) loaded = group.findImportance(context);
     context.progress.begin("proxy");
-    if (loaded) proxy = makeCaptureProxy(group.geometry, group.samples, group.colors(), group.importance());
-    return loaded.has_value();
+    if (!loaded) return false;
+    const bundle::CaptureProxy made =
+        makeCaptureProxy(group.geometry, group.samples, group.colors(), group.importance());
+    proxy = {};
+    if (!made.levels.empty()) proxy.bytes = bundle::encodeCaptureProxy(made);
+    for (const bundle::ProxyLevel& level : made.levels) proxy.triangles.push_back(level.triangle_count);
+    return true;
   });
   if (!loaded) return failAgain(loaded.error());
   return proxy;
@@ -315,8 +284,7 @@ void reportGroup(const GroupScene& group, const BakedGroup& baked, BakeReport& r
   BakeReport::Group& own = report.groups.emplace_back();
   own.name = group.group.name;
   own.light_probes = baked.light_probes.points.size();
-  for (const bundle::ProxyLevel& level : baked.proxy.levels)
-    own.proxy_triangles.push_back(level.triangle_count);
+  own.proxy_triangles = baked.proxy.triangles;
 }
 
 // Adds to the report what it says of the light of the last group's surfaces, and of what each effect cost.
@@ -343,28 +311,6 @@ void reportSurfaces(const GroupScene& group, const SurfaceFigures& figures, bool
   if (group.anyGlossy()) add("glossy", figures.glossy);
 }
 
-// Finds the cells in the cache. Returns false if there are none.
-bool findSurfaces(const BakeContext& context, SurfaceCells& cells) {
-  if (!findKept(context, cells)) {
-    cells = {};
-    return false;
-  }
-  for (SurfaceFigures::Rays* rays : {&cells.figures.diffuse, &cells.figures.glossy})
-    rays->kept += std::exchange(rays->traced, 0);
-  return true;
-}
-
-// Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
-bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const SurfaceTransport& light,
-                        const BakeContext& context, BakedGroup& out) {
-  const SurfaceBody body(group.view(), {.direct = light.direct.field,
-                                        .bounced = light.bounced ? &light.bounced->field : nullptr,
-                                        .sends = group.bake.options.bounces != 0,
-                                        .brdfs = group.brdfs(),
-                                        .glossy = light.glossy()});
-  return bakeAround(around, body, {group.geometry.bounds_min, group.geometry.bounds_max}, context, out);
-}
-
 }  // namespace
 
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
@@ -377,36 +323,59 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   baked.proxy = std::move(*proxy);
   reportGroup(group, baked, report);
 
-  // A result that is found needs neither colours nor rays. The body sends the light that the cells were coded
-  // from, so their key serves the neighborhood too.
+  // Results that are found need neither colours nor rays.
+  std::optional<SurfaceTransport> light;
+  const auto transport = [&]() -> Result<void> {
+    if (light) return {};
+    if (auto prepared = group.prepareRays(context); !prepared) return prepared;
+    light = transportLight(group, context);
+    if (!light) return bake.stopped();
+    return {};
+  };
+  Result<void> made;
+  CachedCoding coding(context);
   const BakeContext cells_context = context.keyed(group.keys.cells);
+  const auto found = findOrMake(cells_context, baked.surfaces, [&] {
+    if (made = transport(); !made) return false;
+    auto coded = codeSurfaces(group, *light, coding, context.progress);
+    if (coded)
+      baked.surfaces = std::move(*coded);
+    else
+      made = bake.stopped();
+    return made.has_value();
+  });
+  if (!found) return failAgain(made.error());
+  coding.drop();
+  SurfaceFigures& figures = baked.surfaces.figures;
+  if (*found)
+    for (SurfaceFigures::Rays* rays : {&figures.diffuse, &figures.glossy})
+      rays->kept += std::exchange(rays->traced, 0);
+  reportSurfaces(group, figures, *found, report);
+
+  // The body sends the light that the cells were coded from, so their key serves the neighborhood too.
+  const auto body = [&]() -> Result<std::unique_ptr<Body>> {
+    if (auto traced = transport(); !traced) return failAgain(traced.error());
+    if (*found) report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+    return std::make_unique<SurfaceBody>(
+        group.view(), BakedSurfaces{.direct = light->direct.field,
+                                    .bounced = light->bounced ? &light->bounced->field : nullptr,
+                                    .sends = bake.options.bounces != 0,
+                                    .brdfs = group.brdfs(),
+                                    .glossy = light->glossy()});
+  };
   // A sample of a surface spreads its rays over a hemisphere; a point in free space spreads them over the
   // directions that the body fills, and the body's rim counts.
-  const Around around{bake, index, group.geometry.origin, 2 * bake.options.effectiveRays(), report};
-  const BakeContext around_context = contextOf(around, cells_context);
-  const bool found = findSurfaces(cells_context, baked.surfaces);
-  if (found) reportSurfaces(group, baked.surfaces.figures, found, report);
-  const bool bakes_around =
-      around.plan().baked && !group.geometry.triangles.empty() && !findAround(around, around_context, baked);
-  if (!found || bakes_around) {
-    if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
-    const auto light = transportLight(group, context);
-    if (!light) return bake.stopped();
-    if (found) {
-      report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
-    } else {
-      CachedCoding coding(context);
-      auto coded = codeSurfaces(group, *light, coding, context.progress);
-      if (!coded) return bake.stopped();
-      baked.surfaces = std::move(*coded);
-      reportSurfaces(group, baked.surfaces.figures, found, report);
-      keepValue(cells_context, baked.surfaces);
-      coding.drop();
-    }
-    if (bakes_around && !bakeAroundSurfaces(around, group, *light, around_context, baked))
-      return bake.stopped();
-    dropTransport(group, *light, context);
-  }
+  const Around around{bake,
+                      index,
+                      group.geometry.origin,
+                      {group.geometry.bounds_min, group.geometry.bounds_max},
+                      2 * bake.options.effectiveRays()};
+  if (!group.geometry.triangles.empty())
+    if (auto done = bakeAround(around, cells_context, body, baked, report); !done)
+      return failAgain(done.error());
+  if (const BakeContext bounces = context.keyed(group.keys.bounces);
+      light && light->bounced && bounces.keeps())
+    dropBounces(group.samples, light->inside, bounces);
   baked.geometry = std::move(group.geometry);
   baked.samples = std::move(group.samples);
   baked.lights = std::move(group.lights);

@@ -4,24 +4,25 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
-#include "baker/bake/picture_error.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/direct.hpp"
+#include "baker/effects/surface/inside_faces.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/light_probes/light_probes.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 
@@ -46,6 +47,46 @@ struct SurfaceFigures {
   float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
 };
 
+template <>
+inline constexpr bool kPlainBytes<bundle::PictureError> = true;
+
+// Points of one part of a group's surfaces as eyes see them (baker/importance), to measure there how wrong
+// pictures are.
+struct ViewPoints {
+  FacePoints points;                // in the order of the eyes
+  std::vector<glm::vec3> weights;   // of the corners of each point's triangle
+  std::vector<glm::vec3> to_eyes;   // unit directions
+  std::vector<std::uint32_t> eyes;  // the eye that sees each point, rising
+  std::uint32_t stands_for = 1;     // so many points that are seen
+  // The same points, traced with as many rays as vertices, whose noise they tell, and with many. Null without
+  // surfaces of the part in the group.
+  std::unique_ptr<TracedPoints> noisy, exact;
+
+  bool seen(std::size_t p) const {
+    return noisy->direct.looks.valid[p] != 0 && exact->direct.looks.valid[p] != 0;
+  }
+  // Returns the share of the squared difference between few and many rays that the many make.
+  double noiseOfExact() const {
+    const std::size_t few = noisy->pass().settings().rays, many = exact->pass().settings().rays;
+    return static_cast<double>(few) / static_cast<double>(few + many);
+  }
+};
+
+struct TracedView {
+  std::vector<float> eye_weights;   // shares of all pictures
+  std::array<ViewPoints, 2> parts;  // by SurfacePart; glossy ones are a few hundred, as their rays are dear
+
+  const ViewPoints& of(SurfacePart part) const { return parts[static_cast<std::size_t>(part)]; }
+};
+
+// Returns nothing if stopped. Without surfaces in sight, there are no points. No result is kept.
+std::optional<TracedView> traceView(const DirectPass& vertices, const GroupScene& group,
+                                    const BakeContext& context);
+
+// Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced light),
+// followed by that of the group's lights if it has any.
+using SurfaceCodes = std::vector<std::vector<CodedTransfer>>;
+
 struct SurfaceTransport {
   DirectResult direct;
   std::optional<BounceResult> bounced;
@@ -56,21 +97,26 @@ struct SurfaceTransport {
   const GlossyField* glossy() const { return direct.glossy.visibility.empty() ? nullptr : &direct.glossy; }
 };
 
-// The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
-// dropTransport().
+// The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay
+// (dropBounces).
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
-// Measures how wrong pictures of the surfaces are, as codes show them; without codes, if they are null.
-std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
-                                            const std::vector<std::vector<CodedTransfer>>* cells);
-void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context);
+// Measures how wrong pictures of the surfaces are (picture_error.cpp), as codes show them; without codes, if
+// they are null. Returns nothing if too few points are seen for a figure.
+std::optional<bundle::PictureError> measurePictureError(const GroupScene& group,
+                                                        const SurfaceTransport& light,
+                                                        const SurfaceCodes* cells);
 
 // The coded transfer of a group's surfaces: all that the group hands to the bundle of it.
 struct SurfaceCells {
-  // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
-  // light), followed by that of the group's lights if it has any.
-  std::vector<std::vector<CodedTransfer>> cells;
+  SurfaceCodes cells;
   std::vector<std::uint8_t> importance;  // of each sample (description.hpp)
   SurfaceFigures figures;
+};
+
+// A capture proxy as its payload.
+struct BakedProxy {
+  bundle::Blob bytes;                    // empty without levels
+  std::vector<std::uint32_t> triangles;  // of each level, finest first
 };
 
 struct BakedGroup {
@@ -78,8 +124,8 @@ struct BakedGroup {
   SampleSet samples;
   std::vector<PlannedLight> lights;
   SurfaceCells surfaces;
-  LightProbes light_probes;           // in the frame of SampleSet::positions
-  bundle::CaptureProxy proxy;         // group frame
+  LightProbes light_probes;  // in the frame of SampleSet::positions
+  BakedProxy proxy;
   std::optional<BakedVolume> volume;  // if set, the members above are empty but for light_probes
   std::optional<BakedNeighborhood> neighborhood;
 };
@@ -90,29 +136,21 @@ struct BakedGroup {
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
                              const BakeContext& context, BakeReport& report);
 
-// Bakes the neighborhood of a group, of surfaces or of a volume, as the plan and the options ask for it.
-
+// A neighborhood, of surfaces or of a volume, beside what the plan and the options ask for.
 struct Around {
   const SceneBake& bake;
   std::size_t group = 0;   // index in the plan
   glm::vec3 origin{0.0f};  // of the body's points, in the group's frame
+  Box3 bounds;             // of the body, relative to `origin`
   std::size_t rays = 0;    // from each grid point
-  BakeReport& report;      // is added to
-
-  const PlannedNeighborhood& plan() const { return bake.plan.neighborhoods[group]; }
 };
 
-// Returns the context of the neighborhood. The key of `body` must cover everything that the body's answers
-// depend on.
-BakeContext contextOf(const Around& around, const BakeContext& body);
-
-// Looks for a result in the cache. If there is one, sets the neighborhood of `out` and reports it, or adds a
-// notice if the result is that there is none. Returns false if it has to be baked.
-bool findAround(const Around& around, const BakeContext& context, BakedGroup& out);
-
-// Does the same by baking it. `bounds` are those of the body, relative to `origin`. Returns false if stopped.
-bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
-                BakedGroup& out);
+// Finds the neighborhood in the cache, or bakes it with the body that `make` returns. The key of `light` must
+// cover all that the body's answers depend on. Adds to the report, at least a notice if there is none.
+// Errors: those of `make`, "stopped".
+Result<void> bakeAround(const Around& around, const BakeContext& light,
+                        const std::function<Result<std::unique_ptr<Body>>()>& make, BakedGroup& out,
+                        BakeReport& report);
 
 // Bakes one volume, from its density to codes: quantization, rays, scattering, coding.
 

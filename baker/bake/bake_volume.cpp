@@ -78,34 +78,6 @@ glm::vec3 centreOf(const glm::uvec3& size, std::span<const float> values, const 
   return glm::vec3(glm::dmat4(group_from_grid) * glm::dvec4(grid, 1.0));
 }
 
-// A Part is a range of the samples of a volume's transfer.
-struct Part {
-  const VolumeTransfer& transfer;
-  std::size_t begin, end;
-
-  std::size_t count() const { return end - begin; }
-  std::span<const float> vectors() const {
-    return std::span(transfer.vectors)
-        .subspan(begin * transfer.vectorSize(), count() * transfer.vectorSize());
-  }
-  std::span<const float> visibility() const {
-    return std::span(transfer.visibility)
-        .subspan(begin * transfer.visibilitySize(), count() * transfer.visibilitySize());
-  }
-  // Returns the transfer with all scatterings, less the unscattered light.
-  std::vector<float> scattered() const {
-    const std::size_t block = transfer.outputs() * transfer.columns();
-    std::vector<float> out;
-    out.reserve(count() * transfer.full_channels * block);
-    for (std::size_t p = begin; p < end; ++p) {
-      const float* const own = &transfer.vectors[p * transfer.vectorSize()];
-      for (std::size_t i = 0; i < transfer.full_channels * block; ++i)
-        out.push_back(own[block + i] - own[i % block]);
-    }
-    return out;
-  }
-};
-
 transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   transfer::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(transfer.order);
@@ -114,19 +86,10 @@ transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   return shape;
 }
 
-CodedTransfer codeDense(const Part& part, const BakeOptions& options, CachedCoding& coding,
-                        CodedVolume& out) {
-  CodedTransfer coded = coding.code(part.vectors(), part.count(), shapeOf(part.transfer),
-                                    {.bound = options.effectiveErrorBound()});
-  out.worst_error = std::max(out.worst_error, double{coded.error});
-  return coded;
-}
-
 // Codes transmitted light as visibility and scattered light as matrices. They are shown together, and errors
 // count by how much of each band the phase function keeps, g^2l.
-std::vector<CodedTransfer> codeMatrices(const Part& part, const BakeOptions& options, CachedCoding& coding,
-                                        CodedVolume& out) {
-  const VolumeTransfer& transfer = part.transfer;
+std::vector<CodedTransfer> codeMatrices(const VolumeTransfer& transfer, std::size_t begin, std::size_t count,
+                                        const BakeOptions& options, CachedCoding& coding, CodedVolume& out) {
   transfer::TransferShape visible = shapeOf(transfer), scattered = visible;
   visible.full_channels = 0;
   visible.visibility_bands = static_cast<std::uint32_t>(transfer.order + transfer.bands - 1);
@@ -134,19 +97,27 @@ std::vector<CodedTransfer> codeMatrices(const Part& part, const BakeOptions& opt
   BandPower power;
   for (std::size_t l = 0; l < power.size(); ++l)
     power[l] = std::pow(double{transfer.g}, 2.0 * static_cast<double>(l));
+  const auto visibility = std::span(transfer.visibility)
+                              .subspan(begin * transfer.visibilitySize(), count * transfer.visibilitySize());
+  // All scatterings, less the unscattered light.
+  const std::size_t block = transfer.outputs() * transfer.columns();
   std::vector<float> matrices;
-  if (transfer.full_channels > 0) matrices = part.scattered();
+  for (std::size_t p = begin; p < begin + count; ++p) {
+    const float* const own = &transfer.vectors[p * transfer.vectorSize()];
+    for (std::size_t i = 0; i < transfer.full_channels * block; ++i)
+      matrices.push_back(own[block + i] - own[i % block]);
+  }
   CodingSettings settings{.bound = options.effectiveGlossyErrorBound(),
-                          .shown_energy = transferEnergy(part.visibility(), visible, power),
+                          .shown_energy = transferEnergy(visibility, visible, power),
                           .kernel_power = power};
   if (!matrices.empty()) {
     settings.shown_energy += transferEnergy(matrices, scattered, power);
     settings.bound *= std::sqrt(0.5f);
   }
   std::vector<CodedTransfer> coded;
-  coded.push_back(coding.code(part.visibility(), part.count(), visible, settings));
+  coded.push_back(coding.code(visibility, count, visible, settings));
   if (!matrices.empty() && !coding.stopped())
-    coded.push_back(coding.code(matrices, part.count(), scattered, settings));
+    coded.push_back(coding.code(matrices, count, scattered, settings));
   double square = 0.0;
   for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
   out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
@@ -164,19 +135,24 @@ bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, Cache
   out.iterations = transfer.iterations, out.residual = transfer.residual;
   progress.begin("coding", samples, "samples");
   for (std::size_t c = 0; c < cells && !coding.stopped(); ++c) {
-    const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
+    const std::size_t begin = samples * c / cells, count = samples * (c + 1) / cells - begin;
     CodedCell& cell = out.cells.emplace_back();
-    cell.count = static_cast<std::uint32_t>(part.count());
-    cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
-    for (std::size_t p = part.begin; p < part.end; ++p) {
+    cell.count = static_cast<std::uint32_t>(count);
+    cell.bounds_min = cell.bounds_max = transfer.grid.place(begin);
+    for (std::size_t p = begin; p < begin + count; ++p) {
       cell.bounds_min = glm::min(cell.bounds_min, transfer.grid.place(p));
       cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
     }
-    if (transfer.bands > 3)
-      cell.transfers = codeMatrices(part, options, coding, out);
-    else
-      cell.transfers.push_back(codeDense(part, options, coding, out));
-    progress.add(part.count());
+    if (transfer.bands > 3) {
+      cell.transfers = codeMatrices(transfer, begin, count, options, coding, out);
+    } else {
+      const auto vectors =
+          std::span(transfer.vectors).subspan(begin * transfer.vectorSize(), count * transfer.vectorSize());
+      cell.transfers.push_back(
+          coding.code(vectors, count, shapeOf(transfer), {.bound = options.effectiveErrorBound()}));
+      out.worst_error = std::max(out.worst_error, double{cell.transfers[0].error});
+    }
+    progress.add(count);
   }
   return !coding.stopped();
 }
@@ -343,19 +319,16 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
-  // A medium has no sharp rim to find, and each ray is marched.
-  const Around around{bake, index, glm::vec3(0.0f), options.effectiveRays() / 4, report};
-  const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;
   CachedCoding coding(context);
   // The transfer is baked only if a result that follows from it is not in the cache.
   std::optional<VolumeTransfer> light;
-  const auto bakeLight = [&](const auto& use) -> Result<void> {
-    auto transfer = transferOf(placed, own, report.ray_seconds);
-    if (!transfer) return failAgain(transfer.error());
-    if (!use(*transfer)) return bake.stopped();
-    light.emplace(std::move(*transfer));
+  const auto transfer = [&]() -> Result<void> {
+    if (light) return {};
+    auto baked_light = transferOf(placed, own, report.ray_seconds);
+    if (!baked_light) return failAgain(baked_light.error());
+    light.emplace(std::move(*baked_light));
     return {};
   };
   Result<void> made;
@@ -363,9 +336,8 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
       own.part("cells", options.effectiveErrorBound(), options.effectiveGlossyErrorBound());
   const auto found = findOrMake(cells_context, coded, [&] {
     coded = {};
-    made = bakeLight([&](const VolumeTransfer& transfer) {
-      return codeCells(transfer, options, coding, context.progress, coded);
-    });
+    made = transfer();
+    if (made && !codeCells(*light, options, coding, context.progress, coded)) made = bake.stopped();
     return made.has_value();
   });
   if (!found) return failAgain(made.error());
@@ -375,16 +347,18 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 
-  if (!around.plan().baked || findAround(around, around_context, result)) return result;
-  if (!light)
-    if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
-  const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
-                         std::span<float> scattered) {
-    return marchVolume(*light, origin, direction, t_max, scattered);
+  const auto body = [&]() -> Result<std::unique_ptr<Body>> {
+    if (auto marched = transfer(); !marched) return failAgain(marched.error());
+    const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                           std::span<float> scattered) {
+      return marchVolume(*light, origin, direction, t_max, scattered);
+    };
+    return std::make_unique<VolumeBody>(march, light->order, low, high);
   };
-  const VolumeBody body(march, light->order, low, high, /*scatters=*/true);
-  if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
+  // A medium has no sharp rim to find, and each ray is marched.
+  const Around around{bake, index, glm::vec3(0.0f), {low, high}, options.effectiveRays() / 4};
+  if (auto done = bakeAround(around, own, body, result, report); !done) return failAgain(done.error());
   return result;
 }
 

@@ -202,10 +202,6 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
                      bake.options);
 }
 
-bool GroupScene::anyLayered() const {
-  return std::ranges::any_of(geometry.draws, [](const DrawGeometry& draw) { return draw.layered; });
-}
-
 Result<void> GroupScene::loadColors() {
   if (colors_) return {};
   auto loaded = SurfaceColors::load(bake.scene, geometry, lights, inputs_.images);
@@ -229,7 +225,9 @@ Result<void> GroupScene::prepareRays(const BakeContext& context) {
   if (auto loaded = loadColors(); !loaded) return loaded;
   if (auto found = findImportance(context); !found) return found;
   sample_importance_ = importance_.ofSamples(samples);
-  if (!anyGlossy() && !(bounces() && anyLayered())) return {};
+  // Layers of smooth dielectrics pass light on.
+  const bool layered = std::ranges::any_of(geometry.draws, &DrawGeometry::layered);
+  if (!anyGlossy() && !(bounces() && layered)) return {};
   auto brdfs =
       SurfaceBrdfs::load(bake.scene, geometry, bake.tables, inputs_.images, bake.options.exitOrder());
   if (!brdfs) return failAgain(brdfs.error());

@@ -92,16 +92,13 @@ class GroupScene {
   bool bounces() const { return bake.options.bounces != 0 && transport().bounces; }
   bool anyDiffuse() const { return samples.glossy.begin > 0; }
   bool anyGlossy() const { return !samples.glossy.empty(); }
-  // Returns whether the group has smooth dielectrics, whose layers pass light on.
-  bool anyLayered() const;
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
   // Builds the ray hierarchy, once, and finds out what eyes see. Errors: images of cut-outs that cannot be
   // decoded, no memory for the hierarchy.
   Result<void> findImportance(const BakeContext& context);
-  // Does both, and loads the BRDFs. Errors: those of
-  // loadColors(), no memory for the hierarchy.
+  // Does both, and loads the BRDFs. Errors: those of both.
   Result<void> prepareRays(const BakeContext& context);
 
   // May be called after loadColors().

@@ -9,9 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "baker/bake/options.hpp"
-#include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
-#include "baker/plan/local_light.hpp"
+#include "baker/plan/effect_plan.hpp"
 #include "runtime/base/lower_case.hpp"
 
 namespace lambent::baker {

@@ -22,6 +22,9 @@ constexpr double kAim = 0.95;
 // figure is to that of pictures as 1 to this.
 constexpr double kQuietNoise = 0.008, kQuietRays = 256.0, kNoise = 0.65, kRefinement = 1.2;
 constexpr std::uint32_t kLeastChosenRays = 128, kMostChosenRays = 16'384, kRaysStep = 16;
+// The parts of the bound that codes, and codes of glossy surfaces, get before more is known. Codes take few:
+// half their error costs a bit a weight, half the noise four times the rays.
+constexpr float kCodesShare = 0.35f, kGlossyCodesShare = 0.7f;
 constexpr double kLeastCodes = 0.25;  // of the bound, even if nothing is left for codes
 constexpr float kMostCodes = 0.25f;   // beyond, codes would show bands of colour whatever the mean error is
 
@@ -215,41 +218,31 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
     const auto found = settings.find(std::string(name));
     return found == settings.end() ? std::string() : found->second;
   };
-  BakeOptions all;
+  const auto row_of = std::ranges::find(kQualities, find("refineMost"), refineMost);
+  if (row_of == kQualities.end()) return std::nullopt;
+  BakeOptions options;
+  options.quality = static_cast<Quality>(row_of - kQualities.begin());
   for (const OptionRow& option : optionRows()) {
     if (option.setting.empty() || option.setting == "fit") continue;  // "fit" is told with the quality
-    if (!settings.contains(std::string(option.setting)) || !option.read(all, find(option.setting)))
-      return std::nullopt;
+    if (!option.read(options, find(option.setting))) return std::nullopt;
   }
-  std::optional<BakeOptions> best;
-  int fewest = 0;
-  for (const Quality quality : {Quality::Draft, Quality::Standard, Quality::High}) {
-    BakeOptions options = all;
-    options.quality = quality;
-    if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
-    // These are the settings that options of this quality must reproduce, among them those that follow from
-    // the quality.
-    auto wanted = options.settings();
-    for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
-    const auto wrong = [&](const BakeOptions& tried) {
-      int count = 0;
-      for (const auto& [name, word] : tried.settings()) count += wanted[name] != word;
-      return count;
-    };
-    // An option that can be left out without changing the settings was not asked for.
-    int asked = 4;
-    const auto leaveOut = [&](auto member) {
-      BakeOptions fewer = options;
-      fewer.*member = BakeOptions().*member;
-      if (wrong(fewer) <= wrong(options)) options = fewer, --asked;
-    };
-    leaveOut(&BakeOptions::rays), leaveOut(&BakeOptions::error_bound);
-    leaveOut(&BakeOptions::refine_bound), leaveOut(&BakeOptions::fit);
-    if (wrong(options) > 0 || (best && asked >= fewest)) continue;
-    fewest = asked;
-    best = options;
-  }
-  return best;
+  if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
+  const auto reproduces = [&](const BakeOptions& tried) {
+    return std::ranges::all_of(tried.settings(), [&](const auto& entry) {
+      const auto found = settings.find(entry.first);
+      return found != settings.end() && found->second == entry.second;
+    });
+  };
+  // An option that can be left out without changing the settings was not asked for.
+  const auto leaveOut = [&](auto member) {
+    BakeOptions fewer = options;
+    fewer.*member = BakeOptions().*member;
+    if (reproduces(fewer)) options = fewer;
+  };
+  leaveOut(&BakeOptions::rays), leaveOut(&BakeOptions::error_bound);
+  leaveOut(&BakeOptions::refine_bound), leaveOut(&BakeOptions::fit);
+  if (!reproduces(options)) return std::nullopt;
+  return options;
 }
 
 }  // namespace lambent::baker

@@ -24,10 +24,6 @@ namespace lambent::baker {
 // rays, interpolation between vertices, and codes. Squares of the three add up. Rays and refinement come from
 // the bound alone; codes come last and get what the others left. All functions are pure.
 
-// The parts of the bound that codes, and codes of glossy surfaces, get before more is known. Codes take few:
-// half their error costs a bit a weight, half the noise four times the rays.
-inline constexpr float kCodesShare = 0.35f, kGlossyCodesShare = 0.7f;
-
 // Returns the rays of a sample, and the bound on refinement, with which most pictures meet theirs.
 std::uint32_t raysFor(float picture_bound);
 float refineBoundFor(float picture_bound);
@@ -108,9 +104,8 @@ struct BakeOptions {
   // once more to be coded. Bounces of glossy samples are matrices, of more bands in two passes.
   double bytesOfTransfer(bool glossy) const;
   std::map<std::string, std::string> settings() const;
-  // Returns options with those settings, of the quality that they differ from least. Names that settings()
-  // does not have are ignored. Returns nothing if a setting is missing or not of its kind. `threads` and
-  // `memory_bytes` keep their defaults.
+  // Returns options with those settings; names that settings() does not have are ignored. Returns nothing if
+  // a setting is missing or not of its kind. `threads` and `memory_bytes` keep their defaults.
   static std::optional<BakeOptions> fromSettings(const std::map<std::string, std::string>& settings);
 };
 
@@ -121,12 +116,12 @@ const char* qualityName(Quality quality);
 std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
 
 // The table of a bake's options: a row for each has its name, its help and the form of its words. The command
-// line, the editor's panel and its command, the checks before a bake, the settings that a bundle records and
-// the journal of unfinished bakes all walk this table. A new option is a member of BakeOptions and a row in
+// line, the editor's panel and its command, the checks before a bake and the settings that a bundle records
+// all walk this table. A new option is a member of BakeOptions and a row in
 // option_rows.cpp. Errors name the option: a word is not of its kind, or a value lies outside its range.
 
 struct OptionRow {
-  std::string_view name;       // as in --name, in scripts and journals
+  std::string_view name;       // as in --name, in scripts
   std::string_view group;      // its heading in the help
   std::string_view setting{};  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;       // what a word looks like, for help: "N|auto"

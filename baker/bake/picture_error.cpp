@@ -1,5 +1,9 @@
-#include "baker/bake/picture_error.hpp"
-
+// Measures how wrong pictures show the surfaces of a group: relative RMS of the light that leaves them
+// towards eyes, over real skies that the bake's bands carry, with the group's lamps as bright as in the file.
+// At points that eyes see (ViewPoints), the light that vertices, codes and interpolation show is
+// compared with what many rays from the point itself find, all bounces included. What few bands cannot show,
+// of light or of a highlight, is no part of it, and neither is the light of lamps on glossy surfaces, nor the
+// detail of normal maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +13,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/bake/bake_group.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/effects/surface/hemisphere.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
@@ -184,102 +189,45 @@ class Arriving {
 // Holds what codes say of the samples that are asked for.
 using Decoded = std::unordered_map<std::uint32_t, std::vector<float>>;
 
-// Calls take(sample, its vector) for the samples of a cell that `decoded` names.
+// Calls take(shape, vector, what `decoded` holds) with all that codes of glossy or of other cells say of the
+// samples that `decoded` names, but for light of the group's lamps on glossy ones.
 template <typename Take>
-void decodeCell(const SampleCell& cell, const CodedTransfer& coded, Decoded& decoded, const Take& take) {
-  const std::vector<float> vectors = decodeTransfer(coded);
-  for (auto& [sample, out] : decoded)
-    if (sample >= cell.first && sample < cell.first + cell.count)
-      take(std::span(vectors).subspan((sample - cell.first) * coded.shape.size(), coded.shape.size()), out);
-}
-
-double noiseOfMany(std::size_t few, std::size_t many) {
-  return static_cast<double>(few) / static_cast<double>(few + many);
-}
-
-// The points of diffuse and normal-mapped surfaces: light that leaves them is albedo times transfer of E/pi.
-class DiffusePoints {
- public:
-  DiffusePoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
-      : points_(traced.view.diffuse),
-        traced_(traced),
-        scene_(scene),
-        baked_(baked),
-        arriving_(scene, baked.direct.field.order) {}
-
-  void addTo(PictureSums& sums) {
-    decode();
-    const auto& noisy = traced_.noisy->direct;
-    const auto& exact = traced_.exact->direct;
-    const double noise_of_exact =
-        noiseOfMany(traced_.noisy->pass().settings().rays, traced_.exact->pass().settings().rays);
-    const std::size_t size = 3 * sums.coefficients();
-    std::vector<float> many(size), few(size), fields(size), codes(size);
-    using enum Arriving::Lamps;
-    for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
-      if (!seen(p)) continue;
-      for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
-      const auto addPoint = [&](const TransferField& field, Arriving::Lamps lamps, std::vector<float>& out) {
-        arriving_.add(field.at(p), field.channels, points_.points.samples.normals[p], 1.0f, lamps, out);
-      };
-      addPoint(noisy.field, All, few), addPoint(exact.field, All, many);
-      addPoint(exact.field, PerPixel, fields), addPoint(exact.field, PerPixel, codes);
-      if (baked_.bounced)
-        addPoint(traced_.noisy->bounced, All, few), addPoint(traced_.exact->bounced, All, many);
-      PictureSums::Point point{
-          .eye = points_.eyes[p], .squared_shares = 0.0, .noise_of_exact = noise_of_exact};
-      for (const SampleShare& shown : shownAt(p)) {
-        const std::uint32_t sample = shown.sample;
-        const float weight = shown.share;
-        if (weight == 0.0f) continue;
-        point.squared_shares += double{weight} * double{weight};
-        const auto addShown = [&](std::span<const float> vector, std::size_t channels, Arriving::Lamps lamps,
-                                  std::vector<float>& out) {
-          arriving_.add(vector, channels, points_.points.samples.normals[p], weight, lamps, out);
-        };
-        const SampleStretch& mapped = scene_.samples.normal_mapped;
-        const bool nine = sample >= mapped.begin && sample < mapped.end;
-        const std::size_t row = nine ? sample - mapped.begin : sample;
-        const TransferField& direct = nine ? baked_.direct.mapped : baked_.direct.field;
-        addShown(direct.at(row), direct.channels, AtVertices, fields);
-        if (baked_.bounced) {
-          const TransferField& bounced = nine ? baked_.bounced->mapped : baked_.bounced->field;
-          addShown(bounced.at(row), bounced.channels, All, fields);
-        }
-        if (baked_.cells) addShown(decoded_.at(sample), 3, All, codes);
-      }
-      if (!baked_.cells) codes = fields;
-      const glm::vec3 albedo =
-          scene_.colors.albedo(points_.points.triangles[p], points_.weights[p].y, points_.weights[p].z);
-      for (auto* vector : {&many, &few, &fields, &codes})
-        for (std::size_t i = 0; i < size; ++i)
-          (*vector)[i] *= albedo[static_cast<int>(i / sums.coefficients())];
-      sums.add(point, {.exact = many, .noisy = few, .fields = fields, .codes = codes});
+void decode(const SampleSet& samples, const SurfaceCodes& codes, bool glossy, Decoded& decoded,
+            const Take& take) {
+  for (std::size_t c = 0; c < samples.cells.size(); ++c) {
+    const SampleCell& cell = samples.cells[c];
+    if ((cell.kind == SampleKind::Glossy) != glossy) continue;
+    for (const CodedTransfer& coded : codes[c]) {
+      if (glossy && coded.shape.order == 0) continue;
+      const std::vector<float> vectors = decodeTransfer(coded);
+      const std::size_t size = coded.shape.size();
+      for (auto& [sample, out] : decoded)
+        if (sample >= cell.first && sample < cell.first + cell.count)
+          take(coded.shape, std::span(vectors).subspan((sample - cell.first) * size, size), out);
     }
   }
+}
 
- private:
-  std::array<SampleShare, 4> shownAt(std::size_t p) const {
-    return shownSamples(scene_.geometry, scene_.samples, points_.points.triangles[p], points_.weights[p]);
-  }
-  bool seen(std::size_t p) const {
-    return traced_.noisy->direct.looks.valid[p] != 0 && traced_.exact->direct.looks.valid[p] != 0;
-  }
-  void decode() {
-    if (!baked_.cells) return;
-    for (std::size_t p = 0; p < points_.eyes.size(); ++p)
-      if (seen(p))
-        for (const SampleShare& shown : shownAt(p)) decoded_[shown.sample];
-    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c)
-      if (const SampleCell& cell = scene_.samples.cells[c]; cell.kind != SampleKind::Glossy)
-        for (const CodedTransfer& coded : (*baked_.cells)[c]) decode(cell, coded);
-  }
-  void decode(const SampleCell& cell, const CodedTransfer& coded) {
-    const std::size_t outputs = coded.shape.outputs, own = coded.shape.columns(),
-                      first = coded.shape.order > 0 ? 0 : arriving_.bands();
-    const std::size_t shadowed = coded.shape.shadowed_channels, full = coded.shape.full_channels;
-    decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
-      out.resize(3 * outputs * arriving_.columns(), 0.0f);
+// Adds the points of diffuse and normal-mapped surfaces: light that leaves them is albedo times transfer of
+// E/pi.
+void addMatte(const TracedScene& scene, const SurfaceTransport& light, const SurfaceCodes* cells,
+              PictureSums& sums) {
+  const ViewPoints& view = light.view.of(SurfacePart::Matte);
+  const Arriving arriving(scene, light.direct.field.order);
+  const auto shownAt = [&](std::size_t p) {
+    return shownSamples(scene.geometry, scene.samples, view.points.triangles[p], view.weights[p]);
+  };
+  Decoded decoded;  // three channels of each output, laid out as in a TransferField
+  if (cells) {
+    for (std::size_t p = 0; p < view.eyes.size(); ++p)
+      if (view.seen(p))
+        for (const SampleShare& shown : shownAt(p)) decoded[shown.sample];
+    const auto take = [&](const transfer::TransferShape& shape, std::span<const float> vector,
+                          std::vector<float>& out) {
+      const std::size_t outputs = shape.outputs, own = shape.columns(),
+                        first = shape.order > 0 ? 0 : arriving.bands();
+      const std::size_t shadowed = shape.shadowed_channels, full = shape.full_channels;
+      out.resize(3 * outputs * arriving.columns(), 0.0f);
       const auto valueAt = [&](std::size_t first_channel, std::size_t channels, std::size_t c, std::size_t j,
                                std::size_t i) {
         return vector[((first_channel + (channels == 3 ? c : 0)) * outputs + j) * own + i];
@@ -288,138 +236,137 @@ class DiffusePoints {
         for (std::size_t c = 0; c < 3; ++c)
           for (std::size_t i = 0; i < own; ++i) {
             const float direct = valueAt(0, shadowed, c, j, i);
-            float& value = out[(j * 3 + c) * arriving_.columns() + first + i];
+            float& value = out[(j * 3 + c) * arriving.columns() + first + i];
             value = full > 0 ? valueAt(shadowed, full, c, j, i) : direct;
-            if (first > 0 && arriving_.perPixel(i)) value -= direct;
+            if (first > 0 && arriving.perPixel(i)) value -= direct;
           }
-    });
+    };
+    decode(scene.samples, *cells, /*glossy=*/false, decoded, take);
   }
 
-  const ViewPoints& points_;
-  const TracedView& traced_;
-  const TracedScene& scene_;
-  const BakedVertices& baked_;
-  Arriving arriving_;
-  Decoded decoded_;  // three channels of each output, laid out as in a TransferField
-};
-
-// The points of glossy surfaces: light that leaves them towards the eye is the dot product of the exit
-// kernel (surface_brdfs.hpp) with the light that matrices transfer there, direct and bounced.
-class GlossyPoints {
- public:
-  GlossyPoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
-      : points_(traced.view.glossy),
-        traced_(traced),
-        scene_(scene),
-        baked_(baked),
-        glossy_(baked.direct.glossy),
-        outputs_(squared(glossy_.order_out)),
-        columns_(squared(glossy_.order_in)),
-        kernel_(3 * outputs_),
-        matrix_(outputs_ * columns_) {}
-
-  void addTo(PictureSums& sums) {
-    decode();
-    const GlossyField &noisy = traced_.noisy_glossy->direct.glossy,
-                      &exact = traced_.exact_glossy->direct.glossy;
-    const double noise_of_exact = noiseOfMany(traced_.noisy_glossy->pass().settings().rays,
-                                              traced_.exact_glossy->pass().settings().rays);
-    const std::size_t size = glossy_.visibilitySize() + bouncedSize();
-    std::vector<float> transfer(size), of_codes(size);
-    std::vector<float> many(3 * (columns_ + 1)), few(many), fields(many), codes(many);
-    for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
-      if (!seen(p)) continue;
-      const std::uint32_t triangle = points_.points.triangles[p];
-      const glm::vec3& weights = points_.weights[p];
-      baked_.brdfs->exitKernel(triangle, weights.y, weights.z, points_.to_eyes[p], kernel_);
-      const auto leaves = [&](const GlossyField& field, std::vector<float>& out) {
-        std::fill(transfer.begin(), transfer.end(), 0.0f);
-        addSample(field, p, 1.0f, transfer);
-        exit(transfer, out);
-      };
-      leaves(noisy, few);
-      leaves(exact, many);
-      std::fill(transfer.begin(), transfer.end(), 0.0f);
-      std::fill(of_codes.begin(), of_codes.end(), 0.0f);
-      PictureSums::Point point{.eye = points_.eyes[p],
-                               .weight = static_cast<double>(points_.stands_for),
-                               .squared_shares = 0.0,
-                               .noise_of_exact = noise_of_exact};
-      for (int corner = 0; corner < 3; ++corner) {
-        const std::uint32_t sample = sampleOf(p, corner);
-        point.squared_shares += double{weights[corner]} * double{weights[corner]};
-        addSample(glossy_, sample - glossy_.first_sample, weights[corner], transfer);
-        if (!baked_.cells) continue;
-        const std::vector<float>& decoded = decoded_.at(sample);
-        for (std::size_t i = 0; i < size; ++i) of_codes[i] += weights[corner] * decoded[i];
+  const std::size_t size = 3 * sums.coefficients();
+  std::vector<float> many(size), few(size), fields(size), codes(size);
+  using enum Arriving::Lamps;
+  for (std::size_t p = 0; p < view.eyes.size(); ++p) {
+    if (!view.seen(p)) continue;
+    for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
+    const auto add = [&](std::span<const float> vector, std::size_t channels, float weight,
+                         Arriving::Lamps lamps, std::vector<float>& out) {
+      arriving.add(vector, channels, view.points.samples.normals[p], weight, lamps, out);
+    };
+    const auto addPoint = [&](const TransferField& field, Arriving::Lamps lamps, std::vector<float>& out) {
+      add(field.at(p), field.channels, 1.0f, lamps, out);
+    };
+    const TransferField& exact = view.exact->direct.field;
+    addPoint(view.noisy->direct.field, All, few), addPoint(exact, All, many);
+    addPoint(exact, PerPixel, fields), addPoint(exact, PerPixel, codes);
+    if (light.bounced) addPoint(view.noisy->bounced, All, few), addPoint(view.exact->bounced, All, many);
+    PictureSums::Point point{
+        .eye = view.eyes[p], .squared_shares = 0.0, .noise_of_exact = view.noiseOfExact()};
+    for (const SampleShare& shown : shownAt(p)) {
+      const std::uint32_t sample = shown.sample;
+      const float weight = shown.share;
+      if (weight == 0.0f) continue;
+      point.squared_shares += double{weight} * double{weight};
+      const SampleStretch& mapped = scene.samples.normal_mapped;
+      const bool nine = sample >= mapped.begin && sample < mapped.end;
+      const std::size_t row = nine ? sample - mapped.begin : sample;
+      const TransferField& direct = nine ? light.direct.mapped : light.direct.field;
+      add(direct.at(row), direct.channels, weight, AtVertices, fields);
+      if (light.bounced) {
+        const TransferField& bounced = nine ? light.bounced->mapped : light.bounced->field;
+        add(bounced.at(row), bounced.channels, weight, All, fields);
       }
-      exit(transfer, fields);
-      if (baked_.cells) exit(of_codes, codes);
-      sums.add(point,
-               {.exact = many, .noisy = few, .fields = fields, .codes = baked_.cells ? codes : fields});
+      if (cells) add(decoded.at(sample), 3, weight, All, codes);
     }
+    if (!cells) codes = fields;
+    const glm::vec3 albedo =
+        scene.colors.albedo(view.points.triangles[p], view.weights[p].y, view.weights[p].z);
+    for (auto* vector : {&many, &few, &fields, &codes})
+      for (std::size_t i = 0; i < size; ++i)
+        (*vector)[i] *= albedo[static_cast<int>(i / sums.coefficients())];
+    sums.add(point, {.exact = many, .noisy = few, .fields = fields, .codes = codes});
+  }
+}
+
+// Adds the points of glossy surfaces: light that leaves them towards the eye is the dot product of the exit
+// kernel (surface_brdfs.hpp) with the light that matrices transfer there, direct and bounced.
+void addGlossy(const TracedScene& scene, const SurfaceTransport& light, const SurfaceBrdfs& brdfs,
+               const SurfaceCodes* cells, PictureSums& sums) {
+  const ViewPoints& view = light.view.of(SurfacePart::Glossy);
+  const GlossyField& glossy = light.direct.glossy;
+  const std::size_t outputs = squared(glossy.order_out), columns = squared(glossy.order_in),
+                    visibility = glossy.visibilitySize(),
+                    bounced = glossy.bounced.empty() ? 0 : glossy.channels * outputs * columns;
+  const auto sampleOf = [&](std::size_t p, int corner) {
+    return scene.samples.vertex_sample[scene.geometry.triangles[view.points.triangles[p]][corner]];
+  };
+  Decoded decoded;  // visibility, and then bounced light
+  if (cells) {
+    for (std::size_t p = 0; p < view.eyes.size(); ++p)
+      for (int corner = 0; corner < 3 && view.seen(p); ++corner)
+        decoded[sampleOf(p, corner)].resize(visibility + bounced);
+    decode(scene.samples, *cells, /*glossy=*/true, decoded,
+           [&](const transfer::TransferShape& shape, std::span<const float> vector, std::vector<float>& out) {
+             const std::size_t first = shape.isVisibility() ? 0 : visibility;
+             std::copy(vector.begin(), vector.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
+           });
   }
 
- private:
-  std::size_t bouncedSize() const {
-    return glossy_.bounced.empty() ? 0 : glossy_.channels * outputs_ * columns_;
-  }
-  bool seen(std::size_t p) const {
-    return traced_.noisy_glossy->direct.looks.valid[p] != 0 &&
-           traced_.exact_glossy->direct.looks.valid[p] != 0;
-  }
-  std::uint32_t sampleOf(std::size_t p, int corner) const {
-    return scene_.samples.vertex_sample[scene_.geometry.triangles[points_.points.triangles[p]][corner]];
-  }
   // Adds a sample's visibility, and then its bounced light.
-  void addSample(const GlossyField& field, std::size_t sample, float weight, std::span<float> out) const {
-    const std::size_t visibility = field.visibilitySize(), bounced = bouncedSize();
+  const auto addSample = [&](const GlossyField& field, std::size_t sample, float weight,
+                             std::vector<float>& out) {
     for (std::size_t i = 0; i < visibility; ++i) out[i] += weight * field.visibility[sample * visibility + i];
     for (std::size_t i = 0; i < bounced; ++i)
       out[visibility + i] += weight * field.bounced[sample * bounced + i];
-  }
-  // Computes the radiance that leaves by kernel_ where `transfer` is visibility and bounced light.
-  void exit(std::span<const float> transfer, std::span<float> out) {
-    const auto visibility = transfer.first(glossy_.visibilitySize());
-    const auto bounced = transfer.subspan(visibility.size());
-    std::fill(matrix_.begin(), matrix_.end(), 0.0f);
-    sh::addVisibilityMatrix(traced_.exact_glossy->pass().gaunt(), visibility, matrix_);
+  };
+  std::vector<float> kernel(3 * outputs), matrix(outputs * columns);
+  // Computes the radiance that leaves by the kernel where `transfer` is visibility and bounced light.
+  const auto exit = [&](const std::vector<float>& transfer, std::vector<float>& out) {
+    const auto back = std::span(transfer).subspan(visibility);
+    std::fill(matrix.begin(), matrix.end(), 0.0f);
+    sh::addVisibilityMatrix(view.exact->pass().gaunt(), std::span(transfer).first(visibility), matrix);
     std::fill(out.begin(), out.end(), 0.0f);
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t first = glossy_.channels == 3 ? c * matrix_.size() : 0;
-      for (std::size_t k = 0, at = 0; k < outputs_; ++k)
-        for (std::size_t i = 0; i < columns_; ++i, ++at)
-          out[c * (columns_ + 1) + i] +=
-              kernel_[c * outputs_ + k] * (bounced.empty() ? matrix_[at] : matrix_[at] + bounced[first + at]);
+      const std::size_t first = glossy.channels == 3 ? c * matrix.size() : 0;
+      for (std::size_t k = 0, at = 0; k < outputs; ++k)
+        for (std::size_t i = 0; i < columns; ++i, ++at)
+          out[c * (columns + 1) + i] +=
+              kernel[c * outputs + k] * (back.empty() ? matrix[at] : matrix[at] + back[first + at]);
     }
-  }
-  void decode() {
-    if (!baked_.cells) return;
-    for (std::size_t p = 0; p < points_.eyes.size(); ++p)
-      for (int corner = 0; corner < 3 && seen(p); ++corner)
-        decoded_[sampleOf(p, corner)].resize(glossy_.visibilitySize() + bouncedSize());
-    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c) {
-      const SampleCell& cell = scene_.samples.cells[c];
-      if (cell.kind != SampleKind::Glossy) continue;
-      for (const CodedTransfer& coded : (*baked_.cells)[c]) {
-        if (coded.shape.order == 0) continue;  // light of the group's lamps
-        const std::size_t first = coded.shape.isVisibility() ? 0 : glossy_.visibilitySize();
-        decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
-          std::copy(vector.begin(), vector.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
-        });
-      }
+  };
+  std::vector<float> transfer(visibility + bounced), of_codes(transfer);
+  std::vector<float> many(3 * (columns + 1)), few(many), fields(many), codes(many);
+  for (std::size_t p = 0; p < view.eyes.size(); ++p) {
+    if (!view.seen(p)) continue;
+    const glm::vec3& weights = view.weights[p];
+    brdfs.exitKernel(view.points.triangles[p], weights.y, weights.z, view.to_eyes[p], kernel);
+    const auto leaves = [&](const TracedPoints& points, std::vector<float>& out) {
+      std::fill(transfer.begin(), transfer.end(), 0.0f);
+      addSample(points.direct.glossy, p, 1.0f, transfer);
+      exit(transfer, out);
+    };
+    leaves(*view.noisy, few);
+    leaves(*view.exact, many);
+    std::fill(transfer.begin(), transfer.end(), 0.0f);
+    std::fill(of_codes.begin(), of_codes.end(), 0.0f);
+    PictureSums::Point point{.eye = view.eyes[p],
+                             .weight = static_cast<double>(view.stands_for),
+                             .squared_shares = 0.0,
+                             .noise_of_exact = view.noiseOfExact()};
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t sample = sampleOf(p, corner);
+      point.squared_shares += double{weights[corner]} * double{weights[corner]};
+      addSample(glossy, sample - glossy.first_sample, weights[corner], transfer);
+      if (!cells) continue;
+      const std::vector<float>& held = decoded.at(sample);
+      for (std::size_t i = 0; i < held.size(); ++i) of_codes[i] += weights[corner] * held[i];
     }
+    exit(transfer, fields);
+    if (cells) exit(of_codes, codes);
+    sums.add(point, {.exact = many, .noisy = few, .fields = fields, .codes = cells ? codes : fields});
   }
-
-  const ViewPoints& points_;
-  const TracedView& traced_;
-  const TracedScene& scene_;
-  const BakedVertices& baked_;
-  const GlossyField& glossy_;
-  std::size_t outputs_, columns_;
-  std::vector<float> kernel_, matrix_;
-  Decoded decoded_;  // visibility, and then bounced light
-};
+}
 
 constexpr std::size_t kViewRays = 1536, kMostGlossyPoints = 400;  // of all eyes together
 
@@ -435,10 +382,11 @@ void add(const SeenPoint& seen, const FacePoint& point, ViewPoints& out) {
   out.eyes.push_back(seen.eye);
 }
 
-View viewPoints(const TracedScene& scene, const Importance& importance) {
-  View view;
-  SampleSet &diffuse = view.diffuse.points.samples, &glossy = view.glossy.points.samples;
-  diffuse.origin_offsets.push_back(0), glossy.origin_offsets.push_back(0);
+// Returns the points without what is traced there.
+TracedView viewPoints(const TracedScene& scene, const Importance& importance) {
+  TracedView view;
+  auto& [matte, glossy] = view.parts;
+  for (ViewPoints* part : {&matte, &glossy}) part->points.samples.origin_offsets.push_back(0);
   std::vector<std::pair<SeenPoint, FacePoint>> seen_glossy;
   for (const SeenPoint& seen : importance.look(kViewRays, scene.geometry, scene.rays)) {
     const glm::uvec3 corners = scene.geometry.triangles[seen.hit.triangle];
@@ -449,52 +397,56 @@ View viewPoints(const TracedScene& scene, const Importance& importance) {
     if (sample >= scene.samples.glossy.begin && sample < scene.samples.glossy.end)
       seen_glossy.emplace_back(seen, point);
     else
-      add(seen, point, view.diffuse);
+      add(seen, point, matte);
   }
   const std::size_t step = (seen_glossy.size() + kMostGlossyPoints - 1) / kMostGlossyPoints;
   for (std::size_t i = 0; i < seen_glossy.size(); i += step)
-    add(seen_glossy[i].first, seen_glossy[i].second, view.glossy);
-  view.glossy.stands_for = static_cast<std::uint32_t>(step);
+    add(seen_glossy[i].first, seen_glossy[i].second, glossy);
+  glossy.stands_for = static_cast<std::uint32_t>(step);
+  SampleSet &diffuse = matte.points.samples, &of_glossy = glossy.points.samples;
   diffuse.diffuse = {0, diffuse.size()};
   diffuse.normal_mapped = diffuse.glossy = {diffuse.size(), diffuse.size()};
-  glossy.glossy = {0, glossy.size()};
+  of_glossy.glossy = {0, of_glossy.size()};
   for (const Eye& eye : importance.eyes()) view.eye_weights.push_back(eye.weight);
   return view;
 }
 
 }  // namespace
 
-std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
-                                    const Importance& importance, const BakeContext& context) {
-  TracedView traced{viewPoints(scene, importance), nullptr, nullptr, nullptr, nullptr};
+std::optional<TracedView> traceView(const DirectPass& vertices, const GroupScene& group,
+                                    const BakeContext& context) {
+  const TracedScene& scene = vertices.scene();
+  TracedView traced = viewPoints(scene, group.importance());
   const std::size_t few = vertices.settings().rays, twice = kLeastTimes * few;
-  const auto trace = [&](const ViewPoints& of, std::size_t rays) {
-    DirectSettings settings = vertices.settings();
-    settings.rays = rays;
-    settings.order_out = glossy_order;
-    auto points = std::make_unique<TracedPoints>(scene, of.points, settings);
-    return points->look(context.keyed(Key{}), "error of pictures") ? std::move(points) : nullptr;
-  };
-  if (scene.samples.glossy.begin > 0) {
-    traced.noisy = trace(traced.view.diffuse, few);
-    traced.exact = trace(traced.view.diffuse,
-                         std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
-    if (!traced.noisy || !traced.exact) return std::nullopt;
-  }
-  if (!scene.samples.glossy.empty()) {
-    traced.noisy_glossy = trace(traced.view.glossy, few);
-    traced.exact_glossy = trace(traced.view.glossy, twice);
-    if (!traced.noisy_glossy || !traced.exact_glossy) return std::nullopt;
+  for (const SurfacePart part : {SurfacePart::Matte, SurfacePart::Glossy}) {
+    if (stretchOf(scene.samples, part).empty()) continue;
+    ViewPoints& view = traced.parts[static_cast<std::size_t>(part)];
+    const auto trace = [&](std::size_t rays, std::unique_ptr<TracedPoints>& points) {
+      DirectSettings settings = vertices.settings();
+      settings.rays = rays;
+      settings.order_out = group.bake.options.glossy_order;
+      points = std::make_unique<TracedPoints>(scene, view.points, settings);
+      return points->look(context.keyed(Key{}), "error of pictures");
+    };
+    const std::size_t many =
+        part == SurfacePart::Glossy
+            ? twice
+            : std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays));
+    if (!trace(few, view.noisy) || !trace(many, view.exact)) return std::nullopt;
   }
   return traced;
 }
 
-std::optional<bundle::PictureError> measurePictureError(const TracedView& traced, const TracedScene& scene,
-                                                        const BakedVertices& baked) {
-  PictureSums sums(baked.direct.field.order, traced.view.eye_weights);
-  if (traced.noisy) DiffusePoints(traced, scene, baked).addTo(sums);
-  if (traced.noisy_glossy) GlossyPoints(traced, scene, baked).addTo(sums);
-  return sums.result();
+std::optional<bundle::PictureError> measurePictureError(const GroupScene& group,
+                                                        const SurfaceTransport& light,
+                                                        const SurfaceCodes* cells) {
+  const TracedScene scene = group.view();
+  PictureSums sums(light.direct.field.order, light.view.eye_weights);
+  if (light.view.of(SurfacePart::Matte).noisy) addMatte(scene, light, cells, sums);
+  if (light.view.of(SurfacePart::Glossy).noisy) addGlossy(scene, light, *group.brdfs(), cells, sums);
+  auto shown = sums.result();
+  if (shown) shown->bound = group.bake.options.effectivePictureBound();
+  return shown;
 }
 
 }  // namespace lambent::baker

@@ -112,6 +112,10 @@ LatticeSteps latticeSteps(const Scene& scene, const std::vector<RigidGroup>& gro
   return steps;
 }
 
+namespace {
+
+// Moves vertices that a primitive shares with one on a coarser lattice to places on that, so that no seam
+// opens between them.
 void closeSeams(const std::vector<RigidGroup>& groups, const LatticeSteps& steps, Meshes& meshes) {
   using Primitive = std::pair<std::uint32_t, std::uint32_t>;  // mesh, primitive
   for (const RigidGroup& group : groups) {
@@ -141,8 +145,6 @@ void closeSeams(const std::vector<RigidGroup>& groups, const LatticeSteps& steps
     }
   }
 }
-
-namespace {
 
 constexpr std::size_t kMaxTriangles = 4'000'000;  // per primitive after splitting
 

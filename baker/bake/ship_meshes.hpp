@@ -24,10 +24,6 @@ float scaleOf(const glm::mat4& group_from_mesh);
 
 LatticeSteps latticeSteps(const Scene& scene, const std::vector<RigidGroup>& groups);
 
-// Moves vertices that a primitive shares with one on a coarser lattice to places on that, so that no seam
-// opens between them.
-void closeSeams(const std::vector<RigidGroup>& groups, const LatticeSteps& steps, Meshes& meshes);
-
 struct ShippedMeshes {
   std::vector<std::vector<std::vector<std::byte>>> draco;        // [mesh][primitive]
   std::vector<std::vector<bundle::DracoAttributes>> attributes;  // [mesh][primitive]

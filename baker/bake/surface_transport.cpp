@@ -55,7 +55,8 @@ std::uint64_t bytesOfBounces(const DirectResult& direct, const Fits& fits, const
     const DirectResult& there = inside->points().direct;
     floats += there.field.vectors.size() + 2 * there.mapped.vectors.size();
   }
-  for (const TracedPoints* const points : {view.noisy.get(), view.exact.get()})
+  const ViewPoints& watched = view.of(SurfacePart::Matte);
+  for (const TracedPoints* const points : {watched.noisy.get(), watched.exact.get()})
     if (points) floats += points->direct.field.vectors.size();
   // Patches pass light on by a matrix.
   const std::size_t glossy = direct.glossy.size();
@@ -112,10 +113,9 @@ bool bounce(const DirectPass& pass, const GroupScene& group, const BakeContext& 
     from.fits[part] = fits[part].get();
     if (fits[part]) light.inside[part] = fits[part]->points().size();
   }
-  const TracedView& view = light.view;
-  for (TracedPoints* const points :
-       {view.noisy.get(), view.exact.get(), view.noisy_glossy.get(), view.exact_glossy.get()})
-    if (points) from.watched.push_back(points);
+  for (const ViewPoints& part : light.view.parts)
+    for (TracedPoints* const points : {part.noisy.get(), part.exact.get()})
+      if (points) from.watched.push_back(points);
   const double tail = options.leavesNothingOut() ? 0.0 : kTailShare * double{options.effectiveErrorBound()};
   light.bounced =
       bakeBounces(from, {options.bounces, tail, options.glossy_order}, context.keyed(group.keys.bounces));
@@ -151,27 +151,11 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
       !tracePart(pass, SurfacePart::Glossy, group, context, *light, fits) ||
       !diffuseFromGlossy(pass, light->direct, context.stop))
     return std::nullopt;
-  auto view = traceView(pass, options.glossy_order, group.view(), group.importance(), context);
+  auto view = traceView(pass, group, context);
   if (!view) return std::nullopt;
   light->view = std::move(*view);
   if (bounces && !bounce(pass, group, context, std::move(fits), *light)) return std::nullopt;
   return light;
-}
-
-std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
-                                            const std::vector<std::vector<CodedTransfer>>* cells) {
-  auto shown = measurePictureError(light.view, group.view(),
-                                   {.direct = light.direct,
-                                    .bounced = light.bounced ? &*light.bounced : nullptr,
-                                    .brdfs = group.brdfs(),
-                                    .cells = cells});
-  if (shown) shown->bound = group.bake.options.effectivePictureBound();
-  return shown;
-}
-
-void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context) {
-  const BakeContext bounces = context.keyed(group.keys.bounces);
-  if (light.bounced && bounces.keeps()) dropBounces(group.samples, light.inside, bounces);
 }
 
 }  // namespace lambent::baker

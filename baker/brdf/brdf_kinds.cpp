@@ -217,21 +217,15 @@ namespace {
 using bundle::BrdfFamily;
 using gltf::Material;
 
-bool always(const Material&, const Material&) {
-  return true;
-}
-
 // The first row that serves a material is used; the last one serves all that are left.
 constexpr std::array kKinds = {
     BrdfKind{"measured", BrdfFamily::Measured, [](const Material& m) { return m.brdf >= 0; },
-             [](const Material& a, const Material& b) { return a.brdf == b.brdf; },
              [](const Scene& scene, const Material& m) {
                return makeMeasured(scene.brdfs[static_cast<std::size_t>(m.brdf)]);
              }},
     BrdfKind{"anisotropic", BrdfFamily::AnisotropicGgx, [](const Material& m) { return m.anisotropy > 0.0f; },
-             &always,
              [](const Scene&, const Material&) -> Result<std::unique_ptr<Brdf>> { return makeGgx(true); }},
-    BrdfKind{"round", BrdfFamily::Ggx, [](const Material&) { return true; }, &always,
+    BrdfKind{"round", BrdfFamily::Ggx, [](const Material&) { return true; },
              [](const Scene&, const Material&) -> Result<std::unique_ptr<Brdf>> { return makeGgx(false); }},
 };
 
@@ -253,7 +247,7 @@ Result<BrdfTables> BrdfTables::make(const Scene& scene, int order, int shipped) 
     if (material.isDiffuse()) continue;
     const BrdfKind& kind = brdfKindOf(material);
     const auto known = std::ranges::find_if(first_of, [&](const gltf::Material* first) {
-      return &brdfKindOf(*first) == &kind && kind.share(*first, material);
+      return &brdfKindOf(*first) == &kind && first->brdf == material.brdf;
     });
     entry = static_cast<std::int32_t>(known - first_of.begin());
     if (known != first_of.end()) continue;

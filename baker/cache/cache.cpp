@@ -183,42 +183,27 @@ std::optional<std::vector<std::byte>> unpackEntry(const Key& key, std::span<cons
   return bytes;
 }
 
-struct Cache::State {
-  fs::path folder;
-  std::uint64_t most_bytes = 0;
-  std::atomic<Time> bake_began = Time(), checkpoint = Time();
-  std::atomic<double> checkpoint_every_s = kCheckpointEvery_s;
-  std::atomic<bool> reading = true, writing = true;
-  mutable std::atomic<std::uint64_t> found = 0, bytes_read = 0, stored = 0, bytes_written = 0, damaged = 0,
-                                     evicted = 0;
-
-  mutable std::mutex lock;             // protects the members below
-  std::optional<std::uint64_t> bytes;  // size of the folder as far as known; other processes add to it
-  std::uint64_t room_at = 0;           // size from which eviction begins
-  std::string notice;
-
-  fs::path pathOf(const Key& key) const {
-    const std::string hex = key.hex();
-    return folder / hex.substr(0, 2) / (hex.substr(2) + kExtension);
-  }
-  void makeRoom();
-};
+fs::path Cache::pathOf(const Key& key) const {
+  const std::string hex = key.hex();
+  return state_->folder / hex.substr(0, 2) / (hex.substr(2) + kExtension);
+}
 
 // Must be called with the lock held.
-void Cache::State::makeRoom() {
-  std::vector<Listed> entries = list(folder);
+void Cache::makeRoom() {
+  std::vector<Listed> entries = list(state_->folder);
   std::uint64_t sum = 0;
   for (const Listed& entry : entries) sum += entry.bytes;
-  const auto wanted = static_cast<std::uint64_t>(kLeftAfterEviction * static_cast<double>(most_bytes));
+  const auto most_bytes = static_cast<double>(state_->most_bytes);
+  const auto wanted = static_cast<std::uint64_t>(kLeftAfterEviction * most_bytes);
   for (const Listed& entry : entries) {
-    if (sum <= wanted || entry.used >= bake_began.load()) break;
+    if (sum <= wanted || entry.used >= state_->bake_began.load()) break;
     if (::unlink(entry.path.c_str()) != 0) continue;
     sum -= entry.bytes;
-    ++evicted;
+    ++state_->figures.evicted;
   }
-  bytes = sum;
+  state_->bytes = sum;
   // If all entries are in use, looking again after the next entry would be too early.
-  room_at = std::max(most_bytes, sum + most_bytes / 10);
+  state_->room_at = std::max(state_->most_bytes, sum + state_->most_bytes / 10);
 }
 
 fs::path Cache::defaultFolder() {
@@ -239,43 +224,34 @@ Result<Cache> Cache::open(const fs::path& folder, std::uint64_t most_bytes) {
   if (!fs::is_directory(folder, unreachable))
     return fail(folder.string(), "cannot be made a cache: " + (code ? code.message() : "it is no folder"),
                 "name another folder with --cache, or --cache off");
-  auto state = std::make_unique<State>();
-  state->folder = folder;
-  state->most_bytes = most_bytes;
-  Cache cache(std::move(state));
+  Cache cache;
+  cache.state_->folder = folder;
+  cache.state_->most_bytes = most_bytes;
   cache.beginBake();
   return cache;
 }
 
-Cache::Cache(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Cache::Cache(Cache&&) noexcept = default;
-Cache& Cache::operator=(Cache&&) noexcept = default;
-Cache::~Cache() = default;
-
 std::optional<std::vector<std::byte>> Cache::find(const Key& key) const {
   if (!state_->reading) return std::nullopt;
-  const fs::path path = state_->pathOf(key);
+  const fs::path path = pathOf(key);
   const auto file = readAndTouch(path);
   if (!file) return std::nullopt;
   auto bytes = unpackEntry(key, *file);
-  if (!bytes) {
-    ++state_->damaged;
-    ::unlink(path.c_str());
-    return std::nullopt;
-  }
-  ++state_->found;
-  state_->bytes_read += file->size();
+  if (!bytes) ::unlink(path.c_str());
+  const std::lock_guard hold(state_->lock);
+  ++(bytes ? state_->figures.found : state_->figures.damaged);
+  if (bytes) state_->figures.bytes_read += file->size();
   return bytes;
 }
 
 bool Cache::has(const Key& key) const {
-  return state_->reading && ::access(state_->pathOf(key).c_str(), R_OK) == 0;
+  return state_->reading && ::access(pathOf(key).c_str(), R_OK) == 0;
 }
 
 void Cache::put(const Key& key, std::span<const std::byte> bytes) {
   if (!state_->writing) return;
   const std::vector<std::byte> file = packEntry(key, bytes);
-  const fs::path path = state_->pathOf(key);
+  const fs::path path = pathOf(key);
   std::error_code ignored;  // the error shows when the file is written
   fs::create_directory(path.parent_path(), ignored);
   const auto written = writeBeside(path, file);
@@ -286,31 +262,19 @@ void Cache::put(const Key& key, std::span<const std::byte> bytes) {
       state_->notice = "cache: " + written.error().line() + "; the bake goes on and keeps nothing more in it";
     return;
   }
-  ++state_->stored;
-  state_->bytes_written += file.size();
+  ++state_->figures.stored;
+  state_->figures.bytes_written += file.size();
   if (state_->bytes) *state_->bytes += file.size();
-  if (!state_->bytes || *state_->bytes > state_->room_at) state_->makeRoom();
+  if (!state_->bytes || *state_->bytes > state_->room_at) makeRoom();
 }
 
 void Cache::drop(const Key& key) {
-  ::unlink(state_->pathOf(key).c_str());
+  ::unlink(pathOf(key).c_str());
 }
 
 void Cache::beginBake() {
   state_->bake_began = now();
   checkpointed();
-}
-
-void Cache::setReading(bool reading) {
-  state_->reading = reading;
-}
-
-void Cache::setCheckpointEvery(double seconds) {
-  state_->checkpoint_every_s = seconds;
-}
-
-double Cache::checkpointEvery() const {
-  return state_->checkpoint_every_s;
 }
 
 bool Cache::checkpointDue() const {
@@ -322,17 +286,9 @@ void Cache::checkpointed() {
   state_->checkpoint = now();
 }
 
-const fs::path& Cache::folder() const {
-  return state_->folder;
-}
-
 CacheFigures Cache::figures() const {
-  return {.found = state_->found,
-          .bytes_read = state_->bytes_read,
-          .stored = state_->stored,
-          .bytes_written = state_->bytes_written,
-          .damaged = state_->damaged,
-          .evicted = state_->evicted};
+  const std::lock_guard hold(state_->lock);
+  return state_->figures;
 }
 
 std::string Cache::notice() const {

@@ -6,10 +6,12 @@
 // a bake fail; notice() reports it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,8 +23,6 @@
 namespace lambent::baker {
 
 inline constexpr std::uint64_t kCacheBytes = std::uint64_t{8} << 30;  // default limit on the folder's size
-
-inline constexpr double kCheckpointEvery_s = 8.0;
 
 struct CacheFigures {
   std::uint64_t found = 0, bytes_read = 0;  // entries; bytes of their files
@@ -38,9 +38,6 @@ class Cache {
 
   // Makes the folder if it does not exist. Errors: the folder cannot be made, or the path is no folder.
   static Result<Cache> open(const std::filesystem::path& folder, std::uint64_t most_bytes = kCacheBytes);
-  Cache(Cache&&) noexcept;
-  Cache& operator=(Cache&&) noexcept;
-  ~Cache();
 
   std::optional<std::vector<std::byte>> find(const Key& key) const;
   bool has(const Key& key) const;  // a quick test; the entry may still be damaged
@@ -50,24 +47,39 @@ class Cache {
   // Marks the begin of a bake: entries that were used before may be evicted, those used from now on are kept.
   void beginBake();
   // If `reading` is false, find() finds nothing, but put() still keeps results (`--force`).
-  void setReading(bool reading);
+  void setReading(bool reading) { state_->reading = reading; }
 
   // Sets how many seconds of work a killed bake may lose: longer work is kept in parts
   // (baker/jobs/stage.hpp).
-  void setCheckpointEvery(double seconds);
-  double checkpointEvery() const;
+  void setCheckpointEvery(double seconds) { state_->checkpoint_every_s = seconds; }
   // Returns whether it is time for the next checkpoint. checkpointed() says that one was just made.
   bool checkpointDue() const;
   void checkpointed();
 
-  const std::filesystem::path& folder() const;
   CacheFigures figures() const;
   // Says why entries are not kept any more; empty if there is no problem.
   std::string notice() const;
 
  private:
-  struct State;
-  explicit Cache(std::unique_ptr<State> state);
+  using Time = std::filesystem::file_time_type;
+  struct State {
+    std::filesystem::path folder;
+    std::uint64_t most_bytes = 0;
+    std::atomic<Time> bake_began = Time(), checkpoint = Time();
+    std::atomic<double> checkpoint_every_s = 8.0;
+    std::atomic<bool> reading = true, writing = true;
+
+    std::mutex lock;                     // protects the members below
+    std::optional<std::uint64_t> bytes;  // size of the folder as far as known; other processes add to it
+    std::uint64_t room_at = 0;           // size from which eviction begins
+    CacheFigures figures;
+    std::string notice;
+  };
+
+  Cache() : state_(std::make_unique<State>()) {}
+  std::filesystem::path pathOf(const Key& key) const;
+  void makeRoom();
+
   std::unique_ptr<State> state_;
 };
 

@@ -6,12 +6,9 @@
 
 namespace lambent::baker {
 
-struct KeyMaker::State {
-  struct Free {
-    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-  };
-  std::unique_ptr<XXH3_state_t, Free> hash{XXH3_createState()};
-};
+void KeyMaker::Free::operator()(XXH3_state_s* hash) const {
+  XXH3_freeState(hash);
+}
 
 std::string Key::hex() const {
   std::array<char, 33> text{};
@@ -20,12 +17,9 @@ std::string Key::hex() const {
   return text.data();
 }
 
-KeyMaker::KeyMaker() : state_(std::make_unique<State>()) {
-  XXH3_128bits_reset(state_->hash.get());
+KeyMaker::KeyMaker() : hash_(XXH3_createState()) {
+  XXH3_128bits_reset(hash_.get());
 }
-KeyMaker::KeyMaker(KeyMaker&&) noexcept = default;
-KeyMaker& KeyMaker::operator=(KeyMaker&&) noexcept = default;
-KeyMaker::~KeyMaker() = default;
 
 KeyMaker KeyMaker::ofStage(std::string_view stage) {
   KeyMaker maker;
@@ -35,12 +29,12 @@ KeyMaker KeyMaker::ofStage(std::string_view stage) {
 }
 
 KeyMaker& KeyMaker::addBytes(std::span<const std::byte> bytes) {
-  if (!bytes.empty()) XXH3_128bits_update(state_->hash.get(), bytes.data(), bytes.size());
+  if (!bytes.empty()) XXH3_128bits_update(hash_.get(), bytes.data(), bytes.size());
   return *this;
 }
 
 Key KeyMaker::key() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(state_->hash.get());
+  const XXH128_hash_t hash = XXH3_128bits_digest(hash_.get());
   return {hash.high64, hash.low64};
 }
 

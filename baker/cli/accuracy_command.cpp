@@ -10,7 +10,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
-#include "baker/sweep/report.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
@@ -56,11 +56,11 @@ SweepListener progressLines(bool terminal) {
     std::fflush(stderr);
   };
   const auto measured = [=](std::size_t done, std::size_t all, const Measured& m) {
-    const Figures& f = m.picture.as_light_is;
     fmt::print(stderr, "{}lambent: {} of {}  {}: {} wrong, bake {}, frame {:.1f} ms, {}\n",
-               terminal ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
-               durationText(m.bake.seconds), m.picture.frame_ms,
-               bytesText(static_cast<double>(m.bake.bytes)));
+               terminal ? "\r\033[K" : "", done, all, m.setting.name(),
+               percentText(m.picture.at("asLightIs").at("rms").get<double>(), 2),
+               durationText(m.bake.at("seconds").get<double>()), m.picture.at("frameMs").get<double>(),
+               bytesText(m.bake.at("bytes").get<double>()));
   };
   return {.begin = begin, .measured = measured};
 }

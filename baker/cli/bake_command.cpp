@@ -1,4 +1,4 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --resume. SCENE may be a folder.
+// Implements lambent bake SCENE [-o OUT.lmb.glb]. SCENE may be a folder.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -21,8 +21,6 @@
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
@@ -58,7 +56,6 @@ namespace fs = std::filesystem;
 
 struct BakeArguments {
   std::filesystem::path scene, output;
-  bool resume = false;
   double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
@@ -86,36 +83,19 @@ std::optional<Cache> bakeCache(const BakeArguments& a) {
   return std::move(*cache);
 }
 
-// The journal of this program lies in the cache's folder.
-Journal bakeJournal(const std::optional<Cache>& cache) {
-  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
-}
-
-// Returns the report, or nothing if the bundle was up to date. Bakes are recorded in the journal, progress is
-// shown, and a bundle that is up to date is left alone.
+// Returns the report, or nothing if the bundle was up to date. Progress is shown, and a bundle that is up
+// to date is left alone.
 Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cache,
                               const std::stop_token& stop) {
   if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
     return failAgain(readable.error());
   if (const auto checked = checkRequest(a.options, a.output); !checked) return failAgain(checked.error());
-  Journal::Entry record = bakeJournal(cache).begin({.scene = a.scene,
-                                                    .output = a.output,
-                                                    .options = a.options,
-                                                    .import = {.allow_outside = a.allow_outside}});
-  if (record.error())
-    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
   Progress progress;
   progress.begin("import");
   auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
-  if (!scene) {
-    record.done();
-    return failAgain(scene.error());
-  }
+  if (!scene) return failAgain(scene.error());
   for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
-  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
-    record.done();
-    return BakeOutcome{};
-  }
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) return BakeOutcome{};
   PartSeconds expected;
   if (const auto plan = planFor(*scene, a.options)) {
     BakeGuess guess = guessBake(*scene, *plan, a.options);
@@ -128,10 +108,9 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
     const ProgressLine line(progress, WholeProgress(std::move(expected)), a.say, a.scene);
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
-  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
   if (!report) {
     if (stop.stop_requested())
-      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
+      report.error().hint = cache ? "bake it again, and it goes on from where it was"
                                   : "with a cache, the next bake would go on from where it was";
     return failAgain(report.error());
   }
@@ -149,114 +128,76 @@ nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
   return reportJson({a.output, a.options, *outcome});
 }
 
-// Says where each scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
-// the scenes' own.
-class FolderOutputs {
- public:
-  // If `output` is empty, bundles lie beside their scenes.
-  FolderOutputs(fs::path folder, fs::path output) : folder_(std::move(folder)), output_(std::move(output)) {}
-
-  // Returns the bundle, whose folder it makes. Fails if another scene, as a.gltf beside a.glb, has it.
-  Result<fs::path> outputOf(const fs::path& scene) {
-    fs::path output = bundleBeside(scene);
-    if (!output_.empty())
-      output =
-          (output_ / scene.parent_path().lexically_relative(folder_)).lexically_normal() / output.filename();
-    const auto [entry, added] = scene_of_.try_emplace(output, scene);
-    if (!added && entry->second != scene)
-      return fail(scene.string(),
-                  fmt::format("would be baked to {}, where {} is", output.string(), entry->second.string()),
-                  "rename one of them");
-    std::error_code ignored;  // the bake reports that it cannot write
-    fs::create_directories(output.parent_path(), ignored);
-    return output;
-  }
-
- private:
-  fs::path folder_, output_;
-  std::map<fs::path, fs::path> scene_of_;  // by output
-};
+// Returns where a scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
+// the scenes' own, which it makes.
+fs::path outputOf(const BakeArguments& a, const fs::path& scene) {
+  fs::path output = bundleBeside(scene);
+  if (!a.output.empty())
+    output =
+        (a.output / scene.parent_path().lexically_relative(a.scene)).lexically_normal() / output.filename();
+  std::error_code ignored;  // the bake reports that it cannot write
+  fs::create_directories(output.parent_path(), ignored);
+  return output;
+}
 
 double secondsSince(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
-// Counts and prints what came of each scene.
-class FolderReport {
- public:
-  explicit FolderReport(const BakeArguments& arguments) : arguments_(arguments) {}
-
-  void failed(const fs::path& scene, const Error& error) {
-    ++failed_;
-    // Errors of options and outputs do not name the scene.
-    reportError(error.subject == scene.string() ? error : Error{scene.string(), error.line(), {}});
-    json_.push_back({{"scene", scene.string()}, {"error", error.line()}});
-  }
-  void baked(const BakeArguments& one, const BakeOutcome& outcome, double seconds) {
-    ++(outcome ? baked_ : up_to_date_);
-    missed_ |= failsStrictly(one, outcome);
-    if (!arguments_.json) {
-      say("{}: {}", one.scene.string(),
-          outcome ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
-                                bytesText(static_cast<double>(outcome->file_bytes)))
-                  : one.output.string() + " is up to date");
-      return;
-    }
-    json_.push_back(outcomeJson(one, outcome));
-    json_.back()["scene"] = one.scene.string();
-  }
-  // Prints the last line, or the array, and returns the exit code.
-  int end(std::size_t scenes) const {
-    const std::size_t missing = scenes - baked_ - up_to_date_ - failed_;
-    if (arguments_.json)
-      fmt::print("{}\n", json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    else
-      say("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes, "scene"), baked_, up_to_date_,
-          failed_, missing > 0 ? fmt::format(", {} not begun", missing) : "",
-          durationText(secondsSince(begun_)));
-    return failed_ + missing > 0 || missed_ ? 1 : 0;
-  }
-
- private:
-  template <class... Words>
-  void say(fmt::format_string<Words...> text, Words&&... words) const {
-    if (arguments_.say.quiet) return;
-    fmt::print("{}\n", fmt::format(text, std::forward<Words>(words)...));
-    std::fflush(stdout);
-  }
-
-  const BakeArguments& arguments_;
-  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
-  std::size_t baked_ = 0, up_to_date_ = 0, failed_ = 0;
-  bool missed_ = false;  // a bound that bakes are held to
-  nlohmann::json json_ = nlohmann::json::array();
-};
-
-// Bakes every scene of the folder `a.scene` once. `a.output` is a folder for bundles, or empty: beside the
-// scenes. Returns the exit code: 1 if a scene has no bundle that shows it as it is.
+// Bakes every scene of the folder `a.scene` once, and counts and prints what came of each. `a.output` is a
+// folder for bundles, or empty: beside the scenes. Returns the exit code: 1 if a scene has no bundle that
+// shows it as it is.
 int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
+  const auto begun = std::chrono::steady_clock::now();
   const std::vector<fs::path> scenes = scenesIn(a.scene);
   if (scenes.empty())
     return reportError({a.scene.string(), "has no scenes in it", "name a folder of .gltf or .glb files"});
-  FolderOutputs outputs(a.scene, a.output);
-  FolderReport report(a);
+  const auto say = [&](const std::string& line) {
+    if (a.json || a.say.quiet) return;
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  };
+  std::map<fs::path, fs::path> scene_of;  // by output
+  std::size_t baked = 0, up_to_date = 0, failed = 0;
+  bool missed = false;  // a bound that bakes are held to
+  nlohmann::json json = nlohmann::json::array();
   for (std::size_t i = 0; i < scenes.size() && !stop.stop_requested(); ++i) {
-    const auto begun = std::chrono::steady_clock::now();
-    const auto output = outputs.outputOf(scenes[i]);
-    if (!output) {
-      report.failed(scenes[i], output.error());
-      continue;
-    }
+    const auto scene_begun = std::chrono::steady_clock::now();
+    const std::string scene = scenes[i].string();
     BakeArguments one = a;
     one.scene = scenes[i];
-    one.output = *output;
+    one.output = outputOf(a, scenes[i]);
     one.say.label = fmt::format("{} of {}  {}  ", i + 1, scenes.size(), scenes[i].filename().string());
-    if (const auto outcome = bakeScene(one, cache, stop))
-      report.baked(one, *outcome, secondsSince(begun));
+    const auto [entry, added] = scene_of.try_emplace(one.output, one.scene);
+    const Result<BakeOutcome> outcome = added ? bakeScene(one, cache, stop)
+                                              : fail(scene,  // such as a.gltf beside a.glb
+                                                     fmt::format("would be baked to {}, where {} is",
+                                                                 one.output.string(), entry->second.string()),
+                                                     "rename one of them");
+    if (!outcome) {
+      ++failed;
+      // Errors of options and outputs do not name the scene.
+      const Error& error = outcome.error();
+      reportError(error.subject == scene ? error : Error{scene, error.line(), {}});
+      json.push_back({{"scene", scene}, {"error", error.line()}});
+      continue;
+    }
+    ++(*outcome ? baked : up_to_date);
+    missed |= failsStrictly(one, *outcome);
+    json.push_back(outcomeJson(one, *outcome));
+    json.back()["scene"] = scene;
+    if (*outcome)
+      say(fmt::format("{}: {} in {}, {}", scene, one.output.string(), durationText(secondsSince(scene_begun)),
+                      bytesText(static_cast<double>((*outcome)->file_bytes))));
     else
-      report.failed(scenes[i], outcome.error());
+      say(fmt::format("{}: {} is up to date", scene, one.output.string()));
   }
-  return report.end(scenes.size());
+  const std::size_t missing = scenes.size() - baked - up_to_date - failed;
+  if (a.json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  say(fmt::format("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes.size(), "scene"), baked,
+                  up_to_date, failed, missing > 0 ? fmt::format(", {} not begun", missing) : "",
+                  durationText(secondsSince(begun))));
+  return failed + missing > 0 || missed ? 1 : 0;
 }
 
 int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
@@ -272,45 +213,13 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   return failsStrictly(a, *outcome) ? 1 : 0;
 }
 
-// Bakes everything that was cut short, with the options that it had.
-int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
-  if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
-  const std::vector<BakeRequest> unfinished = bakeJournal(cache).unfinished();
-  if (unfinished.empty() && !a.say.quiet) fmt::print(stderr, "lambent: no bake was cut short\n");
-  int worst = 0;
-  for (const BakeRequest& request : unfinished) {
-    if (stop.stop_requested()) break;
-    if (std::error_code unknown; !std::filesystem::exists(request.scene, unknown)) {
-      reportNotice(request.scene, "is gone; its bake is given up");
-      bakeJournal(cache).forget(request);
-      continue;
-    }
-    if (!a.say.quiet)
-      fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(),
-                 request.output.string());
-    BakeArguments one = a;
-    one.scene = request.scene;
-    one.output = request.output;
-    one.options = request.options;
-    one.allow_outside = request.import.allow_outside;
-    worst = std::max(worst, printOutcome(one, bakeScene(one, cache, stop)));
-  }
-  return worst;
-}
-
 int runBake(BakeArguments a) {
-  if (a.scene.empty() && !a.resume)
-    return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});
-  if (a.scene.empty() && !a.output.empty())
-    return wrongUsage(
-        {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
   std::error_code failed;
   const bool folder = std::filesystem::is_directory(a.scene, failed);
   if (!folder && a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   std::optional<Cache> cache = bakeCache(a);
-  if (a.scene.empty()) return resumeBakes(a, cache, stop.get_token());
   if (folder) return bakeFolder(a, cache, stop.get_token());
   return printOutcome(a, bakeScene(a, cache, stop.get_token()));
 }
@@ -320,13 +229,11 @@ int runBake(BakeArguments a) {
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene, or a folder of them, into bundles");
-  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below")
+      ->required();
   command_line::addValue(*command, "-o,--output", a->output, "PATH",
                          "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; "
                          "default: beside the scene, with its name");
-  command->add_flag("--resume", a->resume,
-                    "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
-                    "always goes on from what the cache holds of it");
   addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
@@ -348,7 +255,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
   addQuiet(*command, a->say);
   addProgress(*command, a->say);
-  command_line::group(*command, "Files and runs", {"--output", "--resume", "--force", "--allow-outside"});
+  command_line::group(*command, "Files and runs", {"--output", "--force", "--allow-outside"});
   command_line::group(*command, "Accuracy", {"--strict"});
   command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});

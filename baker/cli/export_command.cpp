@@ -96,26 +96,6 @@ class ArrayWriter {
   int arrays_ = 0;
 };
 
-// A sample lies where the vertices are that take their light from it, each by its share.
-struct SamplePoints {
-  std::vector<Vec3> positions, normals;
-  std::vector<float> weights;
-};
-
-void addPoints(const SurfaceData& surface, SamplePoints& points) {
-  for (std::size_t v = 0; v + 1 < surface.offsets.size(); ++v)
-    for (std::uint32_t k = surface.offsets[v]; k < surface.offsets[v + 1]; ++k) {
-      const std::uint32_t s = surface.samples[k];
-      const float w = surface.weights[k];
-      const auto add = [w](Vec3& sum, const Vec3& value) {
-        sum = {sum.x + w * value.x, sum.y + w * value.y, sum.z + w * value.z};
-      };
-      add(points.positions[s], surface.positions[v]);
-      add(points.normals[s], surface.normals[v]);
-      points.weights[s] += w;
-    }
-}
-
 json describe(const TransferBlock& block) {
   return {{"form", nameOf(block.form)},
           {"place", nameOf(block.place)},
@@ -129,7 +109,7 @@ json describe(const TransferBlock& block) {
           {"columns", block.columns}};
 }
 
-json exportGroup(const Bundle& bundle, std::uint32_t index, const SamplePoints& points, ArrayWriter& arrays) {
+json exportGroup(const Bundle& bundle, std::uint32_t index, ArrayWriter& arrays) {
   const GroupInfo& group = bundle.groups()[index];
   const std::string prefix = fmt::format("group{}", index);
   json described = {{"name", group.name},
@@ -138,8 +118,6 @@ json exportGroup(const Bundle& bundle, std::uint32_t index, const SamplePoints& 
                     {"boundsMin", numbers(group.bounds_min)},
                     {"boundsMax", numbers(group.bounds_max)},
                     {"lamps", group.lamps},
-                    {"samplePositions", arrays.write(prefix + ".sample_positions", points.positions)},
-                    {"sampleNormals", arrays.write(prefix + ".sample_normals", points.normals)},
                     {"transfer", json::array()}};
   for (std::uint32_t b = 0; b < group.blocks.size() && arrays.done(); ++b) {
     const TransferBlock& block = group.blocks[b];
@@ -173,18 +151,6 @@ json exportSurface(const SurfaceInfo& info, std::uint32_t index, const SurfaceDa
           {"rowWeights", arrays.write(prefix + ".row_weights", {data.weights.size()}, data.weights)}};
 }
 
-// Returns the mean of what vertices added. Samples that no vertex takes, as those of volumes, are at 0.
-void finish(SamplePoints& points) {
-  for (std::size_t s = 0; s < points.weights.size(); ++s) {
-    if (points.weights[s] <= 0.0f) continue;
-    const auto scale = [](Vec3& v, float by) { v = {v.x * by, v.y * by, v.z * by}; };
-    scale(points.positions[s], 1.0f / points.weights[s]);
-    const Vec3 n = points.normals[s];
-    const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    if (length > 0.0f) scale(points.normals[s], 1.0f / length);
-  }
-}
-
 Result<void> exportBundle(const ExportArguments& a) {
   const Expected<Bundle> bundle = Bundle::open(a.bundle.string());
   if (!bundle) return failAgain(errorOf(bundle.failure()));
@@ -203,21 +169,14 @@ Result<void> exportBundle(const ExportArguments& a) {
     described["light"] = {
         {"words", a.light}, {"order", a.order}, {"coefficients", arrays.write("light", light->coefficients)}};
   }
-  std::vector<SamplePoints> points;
-  for (const GroupInfo& group : bundle->groups())
-    points.push_back({std::vector<Vec3>(group.samples), std::vector<Vec3>(group.samples),
-                      std::vector<float>(group.samples)});
   const std::vector<SurfaceInfo>& surfaces = bundle->surfaces();
   for (std::uint32_t s = 0; s < surfaces.size() && arrays.done(); ++s) {
     const Expected<SurfaceData> data = bundle->surface(s);
     if (!data) return failAgain(errorOf(data.failure()));
-    addPoints(*data, points[surfaces[s].group]);
     described["surfaces"].push_back(exportSurface(surfaces[s], s, *data, arrays));
   }
-  for (std::uint32_t g = 0; g < bundle->groups().size() && arrays.done(); ++g) {
-    finish(points[g]);
-    described["groups"].push_back(exportGroup(*bundle, g, points[g], arrays));
-  }
+  for (std::uint32_t g = 0; g < bundle->groups().size() && arrays.done(); ++g)
+    described["groups"].push_back(exportGroup(*bundle, g, arrays));
   if (!arrays.done()) return arrays.done();
   // The description comes last, so that a folder that has one is whole.
   const std::string text = described.dump(2) + "\n";

@@ -17,7 +17,7 @@
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/plan/effect_plan.hpp"
 #include "runtime/command_line/help.hpp"
@@ -27,7 +27,7 @@ namespace lambent::baker {
 namespace {
 
 // Prints a plan as text that fits one screen: warnings first, then effects and the largest groups, whose
-// primitives are summed up by decision. All of it is in --verbose.
+// primitives are summed up by decision. All of it is in --json.
 
 // A plan with all that is reported about it.
 struct PlanReport {
@@ -41,9 +41,9 @@ struct GroupSize {
   std::size_t vertices = 0, triangles = 0;
 };
 
-// PlanLines of a screen, and of these at most so many for warnings and for local lights.
-constexpr std::size_t kMostLines = 40, kMostSentences = 6;
-constexpr const char* kRest = "lambent plan --verbose lists them";
+// Lines of a screen, and of these at most so many for warnings.
+constexpr std::size_t kMostLines = 40, kMostWarnings = 6;
+constexpr const char* kRest = "lambent plan --json lists them";
 
 using PlanLines = std::vector<std::string>;
 
@@ -66,42 +66,14 @@ std::string wordsOf(const std::string& effect) {
   return words;
 }
 
-void addDecisions(const std::vector<Decision>& decisions, const char* indent, PlanLines& lines) {
-  for (const Decision& d : decisions)
-    if (d.choice != Choice::Absent)  // --json has those too
-      lines.push_back(
-          fmt::format("{}{:<16} {}: {}", indent, wordsOf(d.effect), choiceText(d.choice), d.reason));
-}
-
-const ScenePrimitive& primitiveOf(const Scene& scene, const PlannedDraw& draw) {
-  return scene.meshes[draw.mesh].primitives[draw.primitive];
-}
-
 GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
   GroupSize size;
   for (const PlannedDraw& draw : group.draws) {
-    const bundle::MeshData& mesh = primitiveOf(scene, draw).mesh;
+    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
     size.vertices += mesh.positions.size();
     size.triangles += mesh.indices.size() / 3;
   }
   return size;
-}
-
-std::string shownMaterial(const Scene& scene, const PlannedDraw& draw) {
-  const std::int32_t material = primitiveOf(scene, draw).material;
-  const std::string name = materialName(scene, material);
-  return material < 0 ? "the default material" : name.empty() ? fmt::format("material {}", material) : name;
-}
-
-void addPrimitives(const Scene& scene, const RigidGroup& group, const GroupDecisions& of, PlanLines& lines) {
-  for (const PrimitiveDecisions& primitive : of.primitives) {
-    const PlannedDraw& draw = group.draws[primitive.draw];
-    const std::string& mesh = scene.meshes[draw.mesh].name;
-    lines.push_back(fmt::format("      {}, primitive {} of {}{}",
-                                mesh.empty() ? fmt::format("mesh {}", draw.mesh) : mesh, draw.primitive,
-                                shownMaterial(scene, draw), draw.back ? ", back" : ""));
-    addDecisions(primitive.decisions, "        ", lines);
-  }
 }
 
 // Adds a line for each decision about draws of the group: for how many, and the first one's reason.
@@ -127,7 +99,7 @@ void addAlike(const GroupDecisions& of, PlanLines& lines) {
         first->reason));
 }
 
-PlanLines groupLines(const PlanReport& report, std::size_t g, bool verbose) {
+PlanLines groupLines(const PlanReport& report, std::size_t g) {
   const RigidGroup& group = report.plan.groups[g];
   PlanLines lines;
   if (group.volume >= 0) {
@@ -140,26 +112,24 @@ PlanLines groupLines(const PlanReport& report, std::size_t g, bool verbose) {
     lines.push_back(fmt::format("    {}: {}, {} vertices, {} triangles", group.name,
                                 counted(group.draws.size(), "draw"), size.vertices, size.triangles));
   }
-  addDecisions(report.decisions[g].decisions, "      ", lines);
-  if (verbose)
-    addPrimitives(report.scene, group, report.decisions[g], lines);
-  else
-    addAlike(report.decisions[g], lines);
+  for (const Decision& d : report.decisions[g].decisions)
+    if (d.choice != Choice::Absent)  // --json has those too
+      lines.push_back(fmt::format("      {:<16} {}: {}", wordsOf(d.effect), choiceText(d.choice), d.reason));
+  addAlike(report.decisions[g], lines);
   return lines;
 }
 
-void addSentences(const char* title, const std::vector<std::string>& sentences, bool verbose,
-                  PlanLines& lines) {
-  if (sentences.empty()) return;
-  lines.push_back(fmt::format("  {}", title));
-  const std::size_t shown = verbose ? sentences.size() : std::min(sentences.size(), kMostSentences);
-  for (std::size_t i = 0; i < shown; ++i) lines.push_back("    " + sentences[i]);
-  if (shown < sentences.size())
-    lines.push_back(fmt::format("    and {} more; {}", sentences.size() - shown, kRest));
+void addWarnings(const std::vector<std::string>& warnings, PlanLines& lines) {
+  if (warnings.empty()) return;
+  lines.emplace_back("  warnings");
+  const std::size_t shown = std::min(warnings.size(), kMostWarnings);
+  for (std::size_t i = 0; i < shown; ++i) lines.push_back("    " + warnings[i]);
+  if (shown < warnings.size())
+    lines.push_back(fmt::format("    and {} more; {}", warnings.size() - shown, kRest));
 }
 
 // The largest groups come first.
-void addGroups(const PlanReport& report, bool verbose, PlanLines& lines) {
+void addGroups(const PlanReport& report, PlanLines& lines) {
   std::vector<std::size_t> order(report.plan.groups.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto triangles = [&](std::size_t g) { return sizeOf(report.scene, report.plan.groups[g]).triangles; };
@@ -167,8 +137,8 @@ void addGroups(const PlanReport& report, bool verbose, PlanLines& lines) {
   lines.emplace_back("  rigid groups");
   std::size_t shown = 0, rest = 0;
   for (; shown < order.size(); ++shown) {
-    const PlanLines of = groupLines(report, order[shown], verbose);
-    if (!verbose && shown > 0 && lines.size() + of.size() >= kMostLines) break;
+    const PlanLines of = groupLines(report, order[shown]);
+    if (shown > 0 && lines.size() + of.size() >= kMostLines) break;
     lines.insert(lines.end(), of.begin(), of.end());
   }
   for (std::size_t i = shown; i < order.size(); ++i) rest += triangles(order[i]);
@@ -177,10 +147,10 @@ void addGroups(const PlanReport& report, bool verbose, PlanLines& lines) {
                                 rest, kRest));
 }
 
-void printPlan(const PlanReport& report, bool verbose) {
+void printPlan(const PlanReport& report) {
   const EffectPlan& plan = report.plan;
   PlanLines lines = {report.scene.source.string()};
-  addSentences("warnings", plan.left_out, verbose, lines);
+  addWarnings(plan.left_out, lines);
   lines.emplace_back("  effects");
   for (const EffectChoice& choice : plan.effects)
     lines.push_back(
@@ -189,27 +159,20 @@ void printPlan(const PlanReport& report, bool verbose) {
   lines.push_back(fmt::format("  about {} samples, {} rays, {}, {} of memory for transfer",
                               countText(guess.samples), countText(guess.rays),
                               durationText(sumSeconds(guess.seconds)), bytesText(guess.memory_bytes)));
-  addGroups(report, verbose, lines);
+  addGroups(report, lines);
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
 
 struct PlanArguments {
   std::filesystem::path scene;
   BakeOptions options;
-  bool json = false, verbose = false, allow_outside = false;
+  bool json = false, allow_outside = false;
 };
 
 nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
   nlohmann::json json = nlohmann::json::array();
-  for (const Decision& d : decisions) {
-    nlohmann::json figures = nlohmann::json::object();
-    for (const Figure& figure : d.figures)
-      figures[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
-    json.push_back({{"effect", d.effect},
-                    {"decision", choiceName(d.choice)},
-                    {"reason", d.reason},
-                    {"figures", figures}});
-  }
+  for (const Decision& d : decisions)
+    json.push_back({{"effect", d.effect}, {"decision", choiceName(d.choice)}, {"reason", d.reason}});
   return json;
 }
 
@@ -275,10 +238,7 @@ int runPlan(const PlanArguments& a) {
   const auto decisions = decisionsOf({*scene, a.options, *plan});
   const BakeGuess guess = guessBake(*scene, *plan, a.options);
   const PlanReport report{*scene, *plan, decisions, guess};
-  if (a.json)
-    printPlanJson(report);
-  else
-    printPlan(report, a.verbose);
+  (a.json ? printPlanJson : printPlan)(report);
   return 0;
 }
 
@@ -291,10 +251,9 @@ void addPlanCommand(CLI::App& app, Command& run) {
   addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
-  command->add_flag("--json", a->json, "Print as JSON");
-  command->add_flag("-v,--verbose", a->verbose, "Print every warning, group and primitive");
+  command->add_flag("--json", a->json, "Print as JSON, with every warning, group and primitive");
   command_line::group(*command, "Files", {"--allow-outside"});
-  command_line::group(*command, "Output", {"--json", "--verbose"});
+  command_line::group(*command, "Output", {"--json"});
   command_line::addExamples(*command, {{"lambent plan scene.gltf", "says what would be baked and why"},
                                        {"lambent plan scene.gltf --quality draft", "says so of a draft"}});
   command->callback([a, &run] { run = [a] { return runPlan(*a); }; });

@@ -49,13 +49,13 @@ int runView(const ViewArguments& a) {
 
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  auto server = FileServer::bind(std::move(files), start, a.port);
-  if (!server) return reportError(server.error());
-  fmt::print("{} shows {}; interrupt to end\n", server->address(), a.bundle.string());
-  std::fflush(stdout);
-  if (!a.no_browser && !openBrowser(server->address()))
-    reportNotice({}, "no browser can be opened here; open the address above in one");
-  const auto served = server->run(stop.get_token());
+  const auto began = [&](const std::string& address) {
+    fmt::print("{} shows {}; interrupt to end\n", address, a.bundle.string());
+    std::fflush(stdout);
+    if (!a.no_browser && !openBrowser(address))
+      reportNotice({}, "no browser can be opened here; open the address above in one");
+  };
+  const auto served = serveFiles(files, start, a.port, began, stop.get_token());
   return served ? 0 : reportError(served.error());
 }
 

@@ -477,12 +477,9 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
 std::vector<float> decodeTransfer(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  const transfer::Codebook codebook = transfer::expand(coded.codebook);
-  const transfer::TransferDecoder decoder(coded.shape, codebook, coded.cluster_of, codes);
-  std::vector<float> vectors(coded.cluster_of.size() * coded.shape.size());
-  parallelRanges(coded.cluster_of.size(), kVectorsPerRange, {},
-                 [&](std::size_t begin, std::size_t end) { decoder.decode(begin, end, vectors); });
-  return vectors;
+  return transfer::decodeTransfer(
+      coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes,
+      [](std::size_t count, const auto& body) { parallelRanges(count, kVectorsPerRange, {}, body); });
 }
 
 CodedTransfer codeTransfer(std::span<const float> vectors, [[maybe_unused]] std::size_t count,

@@ -5,7 +5,7 @@
 // G_s makes errors in dark samples count more, since eyes adapt, and those in samples that matter to pictures
 // (sampleImportance in cpca_clusters.hpp); each cluster has steps of its own by it. The bound holds for each
 // block (shadowed light, and full light, which is shown) by itself. W_i is the band power of light
-// (light_weights.hpp) for columns of the environment; columns of the group's lights are weighted so that each
+// (kBandPower) for columns of the environment; columns of the group's lights are weighted so that each
 // light counts as much as the whole environment. W_i is multiplied by (A_l/pi)² of the output's band for
 // normal maps, and by the power of a lobe in that band for glossy surfaces. For visibility, an error in
 // coefficient k changes what is reflected by a power of Σ_ij lobe_i light_j Γ_ijk².
@@ -15,16 +15,32 @@
 // threads; its result is the same for any number of them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stop_token>
 #include <vector>
 
-#include "baker/compress/light_weights.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
+
+// Says how much light real scenes have per coefficient of each band, relative to band 0. Error bounds are
+// stated in shaded radiance over such lights and not in raw coefficients, since an error in a band that
+// carries little light matters little. This is the mean over lights of (sum over m and RGB of l_lm²) /
+// (2l+1), each light divided by its own band 0. If lights are rotated at random, the covariance of their
+// vectors is diagonal with these entries, so they are all that the mean error needs. docs/design/reference.md
+// names the lights.
+inline constexpr std::array<double, 8> kBandPower = {1.0,    0.5085, 0.3297, 0.2374,
+                                                     0.1984, 0.1678, 0.1428, 0.1173};
+
+// BandPower is the power of a glossy kernel per coefficient of each band, relative to band 0. It weights
+// errors of transferred light. kLobePower is that of GGX of roughness 0.3, the sharpest of which order 5
+// carries a fair part (mean over views 11 to 77 degrees from the normal); a bake uses the power of its own
+// materials.
+using BandPower = std::array<double, 6>;
+inline constexpr BandPower kLobePower = {1.0, 0.910, 0.795, 0.682, 0.579, 0.486};
 
 struct CodedPlane {
   std::uint32_t bits = 8;            // 8 or 16

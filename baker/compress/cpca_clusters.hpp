@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {

@@ -5,7 +5,6 @@
 
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/cpca_clusters.hpp"
-#include "baker/compress/light_weights.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <draco/compression/expert_encode.h>
@@ -54,22 +54,6 @@ Result<Snapped> snap(std::span<const glm::vec3> positions, float step, const std
   return snapped;
 }
 
-// Adds an attribute with one value per vertex; returns the attribute's unique id.
-template <typename Value, glm::length_t N>
-std::int32_t addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
-                          bool normalized, const std::vector<glm::vec<N, Value>>& values) {
-  draco::GeometryAttribute layout;
-  layout.Init(type, nullptr, static_cast<std::int8_t>(N), data_type, normalized, sizeof(values[0]), 0);
-  // There may be one value more than points (see farCorner), so the mapping is explicit.
-  const auto count = static_cast<std::uint32_t>(values.size());
-  draco::PointAttribute& attribute =
-      *mesh.attribute(mesh.AddAttribute(layout, /*identity_mapping=*/false, count));
-  attribute.buffer()->Write(0, values.data(), values.size() * sizeof(values[0]));
-  for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
-    attribute.SetPointMapEntry(draco::PointIndex(i), draco::AttributeValueIndex(i));
-  return static_cast<std::int32_t>(attribute.unique_id());
-}
-
 // Draco derives origin and step of its quantization from the box of an attribute's values. (Its interface for
 // explicit ones goes through decimal text of six places.) So the box is made to fit: from the lowest lattice
 // point it reaches 2^bits - 1 steps, so that Draco's step equals ours to the bit.
@@ -100,32 +84,38 @@ std::vector<glm::vec<1, std::uint8_t>> quantizeWeights(std::span<const float> we
   return quantized;
 }
 
-bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& mesh,
-                                      const std::vector<glm::vec3>& positions) {
-  using Attribute = draco::GeometryAttribute;
+// A mesh as Draco takes it.
+struct Source {
+  draco::Mesh mesh;
   bundle::DracoAttributes ids;
-  ids.position = addAttribute(out, Attribute::POSITION, draco::DT_FLOAT32, false, positions);
-  if (!mesh.normals.empty())
-    ids.normal = addAttribute(out, Attribute::NORMAL, draco::DT_FLOAT32, false, mesh.normals);
-  if (!mesh.texcoords0.empty())
-    ids.texcoord0 = addAttribute(out, Attribute::TEX_COORD, draco::DT_FLOAT32, false, mesh.texcoords0);
-  if (!mesh.texcoords1.empty())
-    ids.texcoord1 = addAttribute(out, Attribute::TEX_COORD, draco::DT_FLOAT32, false, mesh.texcoords1);
-  if (!mesh.colors.empty())
-    ids.color0 = addAttribute(out, Attribute::COLOR, draco::DT_UINT16, true, quantizeColors(mesh.colors));
-  if (!mesh.tangents.empty())
-    ids.tangent = addAttribute(out, Attribute::GENERIC, draco::DT_FLOAT32, false, mesh.tangents);
-  if (!mesh.normal_weights.empty())
-    ids.normal_weight =
-        addAttribute(out, Attribute::GENERIC, draco::DT_UINT8, true, quantizeWeights(mesh.normal_weights));
-  return ids;
+  std::vector<int> bits;  // of each attribute; 0 if it is not quantized
+};
+
+// Adds an attribute with one value per vertex, unless there are none. Integers are shares of the largest one.
+template <typename Value, glm::length_t N>
+void addAttribute(Source& to, std::int32_t& id, draco::GeometryAttribute::Type type,
+                  const std::vector<glm::vec<N, Value>>& values, int bits = 0) {
+  if (values.empty()) return;
+  constexpr bool kNormalized = std::is_integral_v<Value>;
+  constexpr draco::DataType kType = !kNormalized         ? draco::DT_FLOAT32
+                                    : sizeof(Value) == 2 ? draco::DT_UINT16
+                                                         : draco::DT_UINT8;
+  draco::GeometryAttribute layout;
+  layout.Init(type, nullptr, static_cast<std::int8_t>(N), kType, kNormalized, sizeof(values[0]), 0);
+  // There may be one value more than points (see farCorner), so the mapping is explicit.
+  const auto count = static_cast<std::uint32_t>(values.size());
+  draco::PointAttribute& attribute =
+      *to.mesh.attribute(to.mesh.AddAttribute(layout, /*identity_mapping=*/false, count));
+  attribute.buffer()->Write(0, values.data(), values.size() * sizeof(values[0]));
+  for (std::uint32_t i = 0; i < to.mesh.num_points(); ++i)
+    attribute.SetPointMapEntry(draco::PointIndex(i), draco::AttributeValueIndex(i));
+  id = static_cast<std::int32_t>(attribute.unique_id());
+  to.bits.push_back(bits);
 }
 
-std::unique_ptr<draco::Mesh> toDraco(const bundle::MeshData& mesh, const Snapped& snapped, float step,
-                                     bundle::DracoAttributes& ids) {
+void fillSource(Source& out, const bundle::MeshData& mesh, const Snapped& snapped, float step) {
   std::vector<glm::vec3> positions = snapped.positions;
-  auto out = std::make_unique<draco::Mesh>();
-  out->set_num_points(static_cast<std::uint32_t>(positions.size()));
+  out.mesh.set_num_points(static_cast<std::uint32_t>(positions.size()));
   // Triangles that collapse on the lattice carry nothing, and Draco's connectivity coder fails on meshes made
   // of them.
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -134,36 +124,20 @@ std::unique_ptr<draco::Mesh> toDraco(const bundle::MeshData& mesh, const Snapped
     if (positions[v[0]] == positions[v[1]] || positions[v[1]] == positions[v[2]] ||
         positions[v[2]] == positions[v[0]])
       continue;
-    out->AddFace({draco::PointIndex(v[0]), draco::PointIndex(v[1]), draco::PointIndex(v[2])});
+    out.mesh.AddFace({draco::PointIndex(v[0]), draco::PointIndex(v[1]), draco::PointIndex(v[2])});
   }
   positions.push_back(farCorner(snapped, step));  // belongs to no point
-  ids = addAttributes(*out, mesh, positions);
+  using Attribute = draco::GeometryAttribute;
+  addAttribute(out, out.ids.position, Attribute::POSITION, positions, positionBits(snapped));
+  addAttribute(out, out.ids.normal, Attribute::NORMAL, mesh.normals, kNormalBits);
+  addAttribute(out, out.ids.texcoord0, Attribute::TEX_COORD, mesh.texcoords0, kTexcoordBits);
+  addAttribute(out, out.ids.texcoord1, Attribute::TEX_COORD, mesh.texcoords1, kTexcoordBits);
+  addAttribute(out, out.ids.color0, Attribute::COLOR, quantizeColors(mesh.colors));
+  addAttribute(out, out.ids.tangent, Attribute::GENERIC, mesh.tangents, kTangentBits);
+  addAttribute(out, out.ids.normal_weight, Attribute::GENERIC, quantizeWeights(mesh.normal_weights));
   // Seams of normals or texture coordinates must not look like borders to the connectivity coder.
-  out->DeduplicateAttributeValues();
-  out->DeduplicatePointIds();
-  return out;
-}
-
-void setQuantization(draco::ExpertEncoder& encoder, const draco::Mesh& mesh, int position_bits) {
-  for (int i = 0; i < mesh.num_attributes(); ++i) {
-    switch (mesh.attribute(i)->attribute_type()) {
-      case draco::GeometryAttribute::POSITION:
-        encoder.SetAttributeQuantization(i, position_bits);
-        break;
-      case draco::GeometryAttribute::NORMAL:
-        encoder.SetAttributeQuantization(i, kNormalBits);
-        break;
-      case draco::GeometryAttribute::TEX_COORD:
-        encoder.SetAttributeQuantization(i, kTexcoordBits);
-        break;
-      case draco::GeometryAttribute::GENERIC:
-        if (mesh.attribute(i)->data_type() == draco::DT_FLOAT32)
-          encoder.SetAttributeQuantization(i, kTangentBits);
-        break;
-      default:
-        break;
-    }
-  }
+  out.mesh.DeduplicateAttributeValues();
+  out.mesh.DeduplicatePointIds();
 }
 
 bool liesOnLattice(std::span<const glm::vec3> positions, float step) {
@@ -192,16 +166,19 @@ Result<EncodedMesh> encodeDraco(const bundle::MeshData& mesh, float step, const 
     return fail(subject, fmt::format("spans 2^{} quantization steps of {} or more", kMaxPositionBits, step),
                 "split the mesh or use a coarser step");
   try {
-    EncodedMesh encoded;
-    const auto source = toDraco(mesh, *snapped, step, encoded.attributes);
-    if (source->num_faces() == 0)
+    Source source;
+    fillSource(source, mesh, *snapped, step);
+    EncodedMesh encoded{.bytes = {}, .attributes = source.ids, .decoded = {}};
+    if (source.mesh.num_faces() == 0)
       return fail(subject, fmt::format("has no triangle larger than the quantization step {}", step),
                   "remove the mesh or scale it up");
-    draco::ExpertEncoder encoder(*source);
+    draco::ExpertEncoder encoder(source.mesh);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
     encoder.SetSpeedOptions(kSpeed, kSpeed);
     encoder.SetTrackEncodedProperties(true);
-    setQuantization(encoder, *source, positionBits(*snapped));
+    for (int i = 0; i < source.mesh.num_attributes(); ++i)
+      if (const int bits = source.bits[static_cast<std::size_t>(i)]; bits > 0)
+        encoder.SetAttributeQuantization(i, bits);
     draco::EncoderBuffer buffer;
     if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())
       return fail(subject, fmt::format("cannot be encoded by Draco ({})", status.error_msg()),

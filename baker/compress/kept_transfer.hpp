@@ -12,7 +12,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/jobs/bake_context.hpp"
 

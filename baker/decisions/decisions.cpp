@@ -1,5 +1,6 @@
 #include "baker/decisions/decisions.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,71 +18,50 @@ Choice bakedIf(bool baked, Choice otherwise = Choice::LeftOut) {
   return baked ? Choice::Baked : otherwise;
 }
 
-Decision groupShadows(const PlannedTransport& planned) {
-  Decision d{"shadows", bakedIf(planned.shadows), planned.shadows_reason};
-  if (planned.height >= 0.0) d.figures = {{"heightAboveFaces", 100.0 * planned.height, "% of the diagonal"}};
-  return d;
-}
-
 Decision groupInterreflection(const BakeOptions& options, const PlannedTransport& planned) {
   const std::size_t most =
       options.bounces < 0 ? BakeOptions::kMostBounces : static_cast<std::size_t>(options.bounces);
-  const bool baked = planned.bounces && most > 0;
-  Decision d{"interreflection", bakedIf(baked), planned.bounces ? "--bounces 0" : planned.bounces_reason};
-  d.figures = {{"mostReflected", 100.0 * planned.most_reflected, "%"}};
-  if (baked) {
-    d.reason = fmt::format("{}: at most {}", planned.bounces_reason, counted(most, "bounce"));
-    d.figures.push_back({"mostBounces", static_cast<double>(most), "bounces"});
-  }
-  return d;
+  if (!planned.bounces) return {"interreflection", Choice::LeftOut, planned.bounces_reason};
+  if (most == 0) return {"interreflection", Choice::LeftOut, "--bounces 0"};
+  return {"interreflection", Choice::Baked,
+          fmt::format("{}: at most {}", planned.bounces_reason, counted(most, "bounce"))};
 }
 
 Decision lamps(const Scene& scene, const RigidGroup& group) {
   const auto lights = findGroupLights(scene, group);
-  std::size_t punctual = 0, spheres = 0;
-  for (const PlannedLight& light : lights) {
-    punctual += light.kind == PlannedLight::Kind::Node;
-    spheres += !light.spheres.empty();
-  }
-  const std::vector<Figure> figures = {{"lights", static_cast<double>(lights.size()), "columns"}};
-  if (lights.empty())
-    return {"lamps", Choice::Absent, "0 materials and nodes of the group give off light", figures};
+  if (lights.empty()) return {"lamps", Choice::Absent, "0 materials and nodes of the group give off light"};
+  const auto punctual = std::ranges::count(lights, PlannedLight::Kind::Node, &PlannedLight::kind);
+  const auto spheres =
+      std::ranges::count(lights, false, [](const auto& light) { return light.spheres.empty(); });
   return {"lamps", Choice::Baked,
           fmt::format("{} in a column of transfer each: {} of nodes, {} of which shine as spheres",
-                      counted(lights.size(), "light"), punctual, spheres),
-          figures};
+                      counted(lights.size(), "light"), punctual, spheres)};
 }
 
 Decision refinement(const BakeOptions& options, bool shadows) {
   const double bound = double{options.effectiveRefineBound()};
-  const bool baked = bound > 0.0 && shadows;
-  return {"refinement",
-          bakedIf(baked),
-          baked     ? fmt::format("edges are split until interpolation errs by {} where shadows change",
-                                  percentText(bound))
-          : shadows ? "--refine off: 0 edges are split"
-                    : "0 shadows change between its vertices",
-          {{"bound", 100.0 * bound, "%"}}};
+  if (!shadows) return {"refinement", Choice::LeftOut, "0 shadows change between its vertices"};
+  if (!(bound > 0.0)) return {"refinement", Choice::LeftOut, "--refine off: 0 edges are split"};
+  return {
+      "refinement", Choice::Baked,
+      fmt::format("edges are split until interpolation errs by {} where shadows change", percentText(bound))};
 }
 
 Decision lightProbes(const PlannedLightProbes& planned) {
   const auto [count, of_group] = planned.count;
-  return {
-      "lightProbes",
-      Choice::Baked,
-      fmt::format("{}{}: {}", counted(count, "light probe"), of_group ? "" : " in each cell", planned.reason),
-      {{"lightProbes", static_cast<double>(count), of_group ? "of the group" : "of each cell"}}};
+  return {"lightProbes", Choice::Baked,
+          fmt::format("{}{}: {}", counted(count, "light probe"), of_group ? "" : " in each cell",
+                      planned.reason)};
 }
 
 Decision neighborhood(const PlannedNeighborhood& planned) {
-  Decision d{"neighborhood", bakedIf(planned.baked), planned.reason};
-  d.figures = {{"receivers", static_cast<double>(planned.receivers.size()), "groups"}};
   if (planned.baked)
-    d.reason =
-        fmt::format("{} within reach: {}", counted(planned.receivers.size(), "receiver"), planned.reason);
-  else if (planned.reason.empty())
-    d.choice = Choice::Absent, d.reason = "0 larger groups have it within their bounds";
-  return d;
+    return {
+        "neighborhood", Choice::Baked,
+        fmt::format("{} within reach: {}", counted(planned.receivers.size(), "receiver"), planned.reason)};
+  if (planned.reason.empty())
+    return {"neighborhood", Choice::Absent, "0 larger groups have it within their bounds"};
+  return {"neighborhood", Choice::LeftOut, planned.reason};
 }
 
 std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
@@ -90,8 +70,10 @@ std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
   const bool surfaces = group.volume < 0;
   std::vector<Decision> all;
   if (surfaces)
-    all = {groupShadows(plan.transport[g]), groupInterreflection(decided.options, plan.transport[g]),
-           lamps(decided.scene, group), refinement(decided.options, plan.transport[g].shadows)};
+    all = {{"shadows", bakedIf(plan.transport[g].shadows), plan.transport[g].shadows_reason},
+           groupInterreflection(decided.options, plan.transport[g]),
+           lamps(decided.scene, group),
+           refinement(decided.options, plan.transport[g].shadows)};
   all.push_back(lightProbes(plan.light_probes[g]));
   all.push_back(neighborhood(plan.neighborhoods[g]));
   all.push_back({"volume", bakedIf(!surfaces, Choice::Absent),
@@ -99,24 +81,23 @@ std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
   return all;
 }
 
-// The share of a highlight that the bands of matrices carry, and the roughness.
-std::vector<Figure> highlightOf(const gltf::Material& material, int bands) {
-  const double roughness = double{material.roughness};
-  return {{"carriedHighlight", 100.0 * lobeEnergyShare(roughness, bands), "%"}, {"roughness", roughness, ""}};
+// Returns the share of a highlight that the bands of matrices carry.
+std::string carriedOf(const gltf::Material& material, const BakeOptions& options) {
+  return percentText(lobeEnergyShare(double{material.roughness}, options.glossy_order));
 }
 
 Decision matrices(const gltf::Material& material, const BakeOptions& options, bool glossy) {
   if (material.isDiffuse())
     return {"matrices", Choice::Absent, "roughness 1 or no specular reflection: 0 % of a highlight"};
-  const auto figures = highlightOf(material, options.glossy_order);
-  const std::string carried = percentText(figures[0].value / 100.0);
   if (!hasMatrices(material))
-    return {"matrices", Choice::LeftOut, "the specular layer shows this highlight instead", figures};
-  return {"matrices", bakedIf(glossy),
-          glossy ? fmt::format("order {} carries {} of this highlight", options.glossy_order, carried)
-                 : fmt::format("--effects {} leaves them out, with {} of this highlight", options.effects,
-                               carried),
-          figures};
+    return {"matrices", Choice::LeftOut, "the specular layer shows this highlight instead"};
+  if (!glossy)
+    return {"matrices", Choice::LeftOut,
+            fmt::format("--effects {} leaves them out, with {} of this highlight", options.effects,
+                        carriedOf(material, options))};
+  return {"matrices", Choice::Baked,
+          fmt::format("order {} carries {} of this highlight", options.glossy_order,
+                      carriedOf(material, options))};
 }
 
 Decision specularLayer(const gltf::Material& material, const BakeOptions& options, bool glossy) {
@@ -124,11 +105,9 @@ Decision specularLayer(const gltf::Material& material, const BakeOptions& option
     return {"specularLayer", Choice::Absent,
             hasMatrices(material) && glossy ? "matrices carry its highlight"
                                             : "0 % of its light is a highlight of a layer"};
-  const auto figures = highlightOf(material, options.glossy_order);
   return {"specularLayer", Choice::Baked,
           fmt::format("order {} of matrices would carry {} of this highlight", options.glossy_order,
-                      percentText(figures[0].value / 100.0)),
-          figures};
+                      carriedOf(material, options))};
 }
 
 Decision mirrorPaths(const gltf::Material& material, const PlannedTransport& planned, bool glossy) {
@@ -136,32 +115,23 @@ Decision mirrorPaths(const gltf::Material& material, const PlannedTransport& pla
   if (!hasMatrices(material) || !glossy || material.roughness >= kMirrorRoughness)
     return {"mirrorPaths", Choice::Absent,
             fmt::format("only light that metals of roughness under {:.2f} send on is followed", most)};
-  return {"mirrorPaths",
-          bakedIf(planned.bounces),
-          planned.bounces
-              ? fmt::format("its roughness of {:.2g} is under {:.2f}: rays that meet it are followed",
-                            roughness, most)
-              : planned.bounces_reason,
-          {{"roughness", roughness, ""}}};
+  if (!planned.bounces) return {"mirrorPaths", Choice::LeftOut, planned.bounces_reason};
+  return {"mirrorPaths", Choice::Baked,
+          fmt::format("its roughness of {:.2g} is under {:.2f}: rays that meet it are followed", roughness,
+                      most)};
 }
 
 Decision normalMap(const gltf::Material& material, bool glossy) {
   if (material.unlit || material.normal_texture.texture < 0)
     return {"normalMap", Choice::Absent, "0 normal maps: a vector for one normal"};
   if (hasMatrices(material) && glossy) return {"normalMap", Choice::Absent, "matrices serve any normal"};
-  return {"normalMap",
-          Choice::Baked,
-          "3 bands of light for any normal in place of a vector",
-          {{"bands", 3.0, "bands"}}};
+  return {"normalMap", Choice::Baked, "3 bands of light for any normal in place of a vector"};
 }
 
 Decision texels(const ScenePrimitive& primitive) {
   if (primitive.texels == 0)
     return {"texels", Choice::Absent, "the author asks for 0 texels: transfer at vertices"};
-  return {"texels",
-          Choice::Baked,
-          fmt::format("the author asks for {0} x {0} texels", primitive.texels),
-          {{"side", static_cast<double>(primitive.texels), "texels"}}};
+  return {"texels", Choice::Baked, fmt::format("the author asks for {0} x {0} texels", primitive.texels)};
 }
 
 // About a front. A back that is baked follows it.

@@ -19,17 +19,10 @@ enum class Choice : std::uint8_t {
 };
 const char* choiceName(Choice choice);  // "baked", "leftOut", "absent"
 
-struct Figure {
-  std::string name;
-  double value = 0.0;
-  std::string unit;
-};
-
 struct Decision {
   std::string effect;
   Choice choice = Choice::Baked;
   std::string reason = {};  // one sentence with its number
-  std::vector<Figure> figures = {};
 };
 
 struct PrimitiveDecisions {

@@ -22,12 +22,6 @@ void RayQuery::intersect(RTCScene scene, RTCRayHit& ray) {
 void RayQuery::intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
   rtcIntersect16(valid, scene, &rays, &intersect_);
 }
-void RayQuery::occluded(RTCScene scene, RTCRay& ray) {
-  rtcOccluded1(scene, &ray, &occluded_);
-}
-void RayQuery::occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
-  rtcOccluded8(valid, scene, &rays, &occluded_);
-}
 void RayQuery::occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
   rtcOccluded16(valid, scene, &rays, &occluded_);
 }
@@ -47,12 +41,6 @@ void RayQuery::intersect(RTCScene scene, RTCRayHit& ray) {
 }
 void RayQuery::intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
   rtcIntersect16(valid, scene, &context_, &rays);
-}
-void RayQuery::occluded(RTCScene scene, RTCRay& ray) {
-  rtcOccluded1(scene, &context_, &ray);
-}
-void RayQuery::occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
-  rtcOccluded8(valid, scene, &context_, &rays);
 }
 void RayQuery::occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
   rtcOccluded16(valid, scene, &context_, &rays);

@@ -51,8 +51,6 @@ class RayQuery {
   void intersect(RTCScene scene, RTCRayHit& ray);
   void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays);
   // Sets tfar to -inf where anything is in the way of a valid ray.
-  void occluded(RTCScene scene, RTCRay& ray);
-  void occluded(RTCScene scene, const int* valid, RTCRay8& rays);
   void occluded(RTCScene scene, const int* valid, RTCRay16& rays);
 
   // Returns the user data of the query that calls a filter.

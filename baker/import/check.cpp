@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
-#include "baker/import/convert.hpp"
-#include "baker/import/details.hpp"
-#include "baker/import/scene_files.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
@@ -23,22 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-std::optional<Object> extension(const Object& object, const char* name) {
-  const auto extensions = object.object("extensions");
-  return extensions ? extensions->object(name) : std::nullopt;
-}
-
-// Returns the object that contains a field of a material, if there is one.
-std::optional<Object> placeOf(const Object& material, const gltf::MaterialJson& field) {
-  const auto [outer, inner] = field.objects;
-  if (!outer) return material;
-  const auto place = material.object(outer);
-  return place && inner ? place->object(inner) : place;
-}
-
-void checkTexture(const Object& owner, const char* key, const Root& root) {
-  if (const auto info = owner.object(key)) info->index("index", root.size("textures"), "textures");
-}
+using nlohmann::json;
 
 }  // namespace
 
@@ -64,340 +41,416 @@ bool readsExtension(std::string_view name) {
   return found;
 }
 
-void checkMaterial(const Object& material, const Root& root) {
-  gltf::forEachMaterialTexture([&](const auto& row) {
-    if (const auto place = placeOf(material, row.json)) checkTexture(*place, row.json.key, root);
-  });
-  if (const auto glossiness = extension(material, "KHR_materials_pbrSpecularGlossiness"))
-    for (const char* key : {"diffuseTexture", "specularGlossinessTexture"})
-      checkTexture(*glossiness, key, root);
-  // `extras` may be anything; only what stands under our own name is ours.
-  if (const nlohmann::json& ours = memberOf(material.json, {"extras", "lambent"}); ours.is_object())
-    Object{ours, material.name + ": extras: lambent"}.text("brdf");
+std::size_t componentBytes(std::uint64_t component_type) {
+  switch (component_type) {
+    case 5120:
+    case 5121:
+      return 1;  // byte, unsigned byte
+    case 5122:
+    case 5123:
+      return 2;  // short, unsigned short
+    case 5125:
+    case 5126:
+      return 4;  // unsigned int, float
+    default:
+      return 0;
+  }
 }
 
-void checkNodeExtensions(const Object& node, const Root& root) {
-  if (const auto light = extension(node, "KHR_lights_punctual")) {
-    const auto lights = extension(root.object, "KHR_lights_punctual");
-    if (!light->index("light", lights ? lights->list("lights").size() : 0, "lights"))
-      throw BrokenField{fmt::format("{} names no light", light->name)};
-  }
-  if (const auto instances = extension(node, "EXT_mesh_gpu_instancing")) {
-    const auto attributes = instances->object("attributes");
-    if (!attributes) throw BrokenField{fmt::format("{} has no attributes", instances->name)};
-    for (const auto& item : attributes->json.items())
-      attributes->index(item.key().c_str(), root.size("accessors"), "accessors");
-  }
+std::size_t componentsOf(std::string_view type) {
+  constexpr std::array<std::pair<std::string_view, std::size_t>, 7> kTypes{
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+  for (const auto& [known, components] : kTypes)
+    if (known == type) return components;
+  return 0;
+}
+
+const nlohmann::json& Entry::list(const char* key) const {
+  static const nlohmann::json kEmpty = nlohmann::json::array();
+  const nlohmann::json* value = find(key);
+  if (value == nullptr || value->is_null()) return kEmpty;
+  if (!value->is_array()) refuse("{}: {} is not an array", name, key);
+  return *value;
+}
+
+std::uint64_t Entry::toNumber(const nlohmann::json& value, const std::string& key) const {
+  constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kLargest)
+    refuse("{}: {} is not a whole number from 0 up", name, key);
+  return value.get<std::uint64_t>();
+}
+
+std::optional<std::uint64_t> Entry::number(const char* key) const {
+  const nlohmann::json* value = find(key);
+  if (value == nullptr) return std::nullopt;
+  return toNumber(*value, key);
+}
+
+std::uint64_t Entry::required(const char* key) const {
+  const auto value = number(key);
+  if (!value) refuse("{} has no {}", name, key);
+  return *value;
+}
+
+std::optional<std::uint64_t> Entry::below(const char* key, std::size_t size, const char* list) const {
+  const auto value = number(key);
+  if (value && *value >= size)
+    refuse("{}: {} {} does not exist (there are {} {})", name, key, *value, size, list);
+  return value;
+}
+
+std::optional<std::uint64_t> Entry::index(const char* key, const char* list) const {
+  const auto value = below(key, memberOf(document.json, {list}).size(), list);
+  if (value) document.used[list].insert(*value);
+  return value;
+}
+
+void Entry::indexAll(const char* list) const {
+  for (const auto& item : json.items()) index(item.key().c_str(), list);
+}
+
+std::string Entry::text(const char* key) const {
+  const nlohmann::json* value = find(key);
+  if (value == nullptr) return {};
+  if (!value->is_string()) refuse("{}: {} is not a string", name, key);
+  return value->get<std::string>();
+}
+
+void Entry::numbers(const char* key, std::size_t count) const {
+  const nlohmann::json* values = find(key);
+  if (values == nullptr || (values->is_array() && (count == 0 || values->size() == count) &&
+                            std::ranges::all_of(*values, isFiniteNumber)))
+    return;
+  if (count == 0) refuse("{}: {} is not a list of finite numbers", name, key);
+  refuse("{}: {} is not {} finite numbers", name, key, count);
 }
 
 namespace {
 
-void checkAsset(const Root& root) {
-  const auto asset = root.object.object("asset");
+void checkAsset(const Entry& root) {
+  const auto asset = root.object("asset");
   const std::string version = asset ? asset->text("version") : std::string();
-  if (version.empty()) throw BrokenField{"is not glTF: no asset.version"};
+  if (version.empty()) refuse("is not glTF: no asset.version");
   const std::string minimum = asset->text("minVersion");
   if (!version.starts_with("2.") || !(minimum.empty() || minimum == "2.0"))
-    throw BrokenField{
-        fmt::format("needs glTF {}, this program reads 2.0", minimum.empty() ? version : minimum),
-        "export the scene as glTF 2.0"};
+    throw Error{{},
+                fmt::format("needs glTF {}, this program reads 2.0", minimum.empty() ? version : minimum),
+                "export the scene as glTF 2.0"};
 }
 
 // Returns whether bytes of vertices or indices lie where only the extension finds or decodes them: it is used
 // by a buffer, view or accessor, or by a primitive that has no such bytes.
-bool holdsGeometry(const std::string& name, const Root& root) {
-  const auto uses = [&](const nlohmann::json& object) {
+bool holdsGeometry(const std::string& name, const Entry& root) {
+  const auto uses = [&](const json& object) {
     return !memberOf(object, {"extensions", name.c_str()}).is_null();
   };
   for (const char* key : {"buffers", "bufferViews", "accessors"})
-    if (std::ranges::any_of(root.object.list(key), uses)) return true;
-  const nlohmann::json& accessors = root.object.list("accessors");
-  const auto lacksBytes = [&](const nlohmann::json& owner, const char* key) {
-    if (!owner.is_object() || !owner.contains(key)) return false;
-    const std::size_t i = owner[key].is_number_unsigned() ? owner[key].get<std::size_t>() : accessors.size();
+    if (std::ranges::any_of(root.list(key), uses)) return true;
+  const json& accessors = root.list("accessors");
+  const auto lacksBytes = [&](const json& index) {
+    const std::size_t i = index.is_number_unsigned() ? index.get<std::size_t>() : accessors.size();
     return i < accessors.size() && !accessors[i].contains("bufferView") && !accessors[i].contains("sparse");
   };
   bool found = false;
-  root.forEach("meshes", "mesh", [&](const Object& mesh) {
-    for (const nlohmann::json& primitive : mesh.list("primitives"))
-      if (uses(primitive)) {
-        const nlohmann::json attributes = primitive.value("attributes", nlohmann::json::object());
-        found |= !attributes.contains("POSITION") || lacksBytes(attributes, "POSITION") ||
-                 lacksBytes(primitive, "indices");
-      }
+  root.forEach("meshes", "mesh", [&](const Entry& mesh) {
+    for (const json& primitive : mesh.list("primitives")) {
+      const json& positions = memberOf(primitive, {"attributes", "POSITION"});
+      found |= uses(primitive) &&
+               (positions.is_null() || lacksBytes(positions) || lacksBytes(memberOf(primitive, {"indices"})));
+    }
   });
   return found;
 }
 
-void checkExtensions(const Root& root) {
-  for (const nlohmann::json& entry : root.object.list("extensionsRequired")) {
+void checkExtensions(const Entry& root) {
+  for (const json& entry : root.list("extensionsRequired")) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : entry.dump();
     if (!readsExtension(name) && holdsGeometry(name, root))
-      throw BrokenField{fmt::format("has geometry that only the extension {} can decode", name),
-                        "export the scene without it"};
+      throw Error{{},
+                  fmt::format("has geometry that only the extension {} can decode", name),
+                  "export the scene without it"};
   }
 }
 
-void checkDraco(const Object& draco, const Root& root) {
-  if (!draco.index("bufferView", root.size("bufferViews"), "bufferViews"))
-    throw BrokenField{fmt::format("{} has no bufferView", draco.name)};
+void checkDraco(const Entry& draco) {
+  if (!draco.index("bufferView", "bufferViews")) refuse("{} has no bufferView", draco.name);
   const auto attributes = draco.object("attributes");
-  if (!attributes) throw BrokenField{fmt::format("{} has no attributes", draco.name)};
+  if (!attributes) refuse("{} has no attributes", draco.name);
   for (const auto& [key, value] : attributes->json.items())
-    if (attributes->toNumber(value, key) > 0xffff)
-      throw BrokenField{fmt::format("{}: {} has a wild attribute id", draco.name, key)};
+    if (attributes->toNumber(value, key) > 0xffff) refuse("{}: {} has a wild attribute id", draco.name, key);
 }
 
-void checkPrimitive(const Object& primitive, const Root& root) {
-  const std::size_t accessors = root.size("accessors");
-  const auto attributes = primitive.object("attributes");
-  if (!attributes) throw BrokenField{fmt::format("{} has no attributes", primitive.name)};
-  for (const auto& item : attributes->json.items())
-    attributes->index(item.key().c_str(), accessors, "accessors");
-  const auto indices = primitive.index("indices", accessors, "accessors");
-  primitive.index("material", root.size("materials"), "materials");
-  checkTextureTransfer(primitive);
-  if (primitive.number("mode").value_or(4) > 6)
-    throw BrokenField{fmt::format("{} has an unknown mode", primitive.name)};
-  const auto extensions = primitive.object("extensions");
-  const auto draco = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
-  if (draco) checkDraco(*draco, root);
+void checkPrimitive(const Entry& primitive) {
+  primitive.object("attributes")->indexAll("accessors");  // which mends have made an object
+  const auto indices = primitive.index("indices", "accessors");
+  primitive.index("material", "materials");
+  checkTextureTransfer(primitive.json, primitive.name);
+  if (primitive.number("mode").value_or(4) > 6) refuse("{} has an unknown mode", primitive.name);
+  const auto draco = primitive.extension("KHR_draco_mesh_compression");
+  if (draco) checkDraco(*draco);
   // Indices that are all zero would be triangles without area.
-  if (indices && !draco && !root.object.list("accessors")[*indices].contains("bufferView") &&
-      !root.object.list("accessors")[*indices].contains("sparse"))
-    throw BrokenField{fmt::format("accessor {} holds indices but has no bufferView", *indices)};
-  std::size_t t = 0;
-  for (const nlohmann::json& entry : primitive.list("targets")) {
-    const Object target{entry, fmt::format("{}, morph target {}", primitive.name, t++)};
-    if (!entry.is_object()) throw BrokenField{fmt::format("{} is not an object", target.name)};
-    for (const auto& item : entry.items()) target.index(item.key().c_str(), accessors, "accessors");
+  if (indices && !draco) {
+    const json& accessor = primitive.document.json["accessors"][*indices];
+    if (!accessor.contains("bufferView") && !accessor.contains("sparse"))
+      refuse("accessor {} holds indices but has no bufferView", *indices);
   }
+  primitive.forEach("targets", primitive.name + ", morph target",
+                    [](const Entry& target) { target.indexAll("accessors"); });
 }
 
-void checkMaterials(const Root& root) {
-  root.forEach("images", "image", [&](const Object& image) {
-    image.index("bufferView", root.size("bufferViews"), "bufferViews");
-  });
-  root.forEach("textures", "texture", [&](const Object& texture) {
-    texture.index("source", root.size("images"), "images");
-    texture.index("sampler", root.size("samplers"), "samplers");
-  });
-  root.forEach("materials", "material", [&](const Object& material) { checkMaterial(material, root); });
+void checkMesh(const Entry& mesh) {
+  mesh.numbers("weights");
+  checkTextureTransfer(mesh.json, mesh.name);
+  mesh.forEach("primitives", mesh.name + ", primitive", checkPrimitive);
 }
 
-void checkMeshes(const Root& root) {
-  root.forEach("meshes", "mesh", [&](const Object& mesh) {
-    std::size_t i = 0;
-    checkNumbers(mesh, "weights");
-    checkTextureTransfer(mesh);
-    for (const nlohmann::json& primitive : mesh.list("primitives"))
-      checkPrimitive({primitive, fmt::format("{}, primitive {}", mesh.name, i++)}, root);
+void checkNodeNumbers(const Entry& owner, const char* key) {
+  const std::size_t size = memberOf(owner.document.json, {"nodes"}).size();
+  for (const json& entry : owner.list(key))
+    if (owner.toNumber(entry, key) >= size)
+      refuse("{}: node {} does not exist (there are {})", owner.name, entry.dump(), size);
+}
+
+// Requires a number, or a list of three, between two others.
+void checkBetween(const Entry& object, const char* key, double least, double most, bool list) {
+  const json* value = object.find(key);
+  if (value == nullptr) return;
+  if (list) object.numbers(key, 3);
+  for (const json& number : list ? *value : json::array({*value}))
+    if (!number.is_number() || !(number.get<double>() >= least && number.get<double>() <= most))
+      throw Error{
+          {},
+          fmt::format("{}: {} is {}, not between {} and {}", object.name, key, value->dump(), least, most),
+          "correct it"};
+}
+
+constexpr double kLargestNumber = 1e12, kSmallestNumber = 1e-12;
+
+void checkVolume(const Entry& volume) {
+  if (volume.text("file").empty())
+    throw Error{
+        {}, fmt::format("{} names no file", volume.name), "name a .vdb or .nrrd file beside the scene"};
+  volume.text("grid");
+  checkBetween(volume, "density_scale", 0.0, kLargestNumber, /*list=*/false);
+  checkBetween(volume, "albedo", 0.0, 1.0, /*list=*/true);
+  checkBetween(volume, "g", -0.99, 0.99, /*list=*/false);
+  checkBetween(volume, "size", kSmallestNumber, kLargestNumber, /*list=*/true);
+}
+
+void checkNeighborhood(const Entry& request) {
+  constexpr double kMostPoints = 256;
+  for (const json& entry : request.list("size")) request.toNumber(entry, "size");
+  checkBetween(request, "size", 2, kMostPoints, /*list=*/true);
+  checkBetween(request, "extent", kSmallestNumber, kLargestNumber, /*list=*/true);
+}
+
+// Checks extras.lambent.volume and extras.lambent.neighborhood (docs/authoring.md).
+void checkGrids(const Entry& node) {
+  const auto ours = node.ours();
+  if (!ours) return;
+  const auto check = [&](const char* key, void (*check_grid)(const Entry&)) {
+    const json* grid = ours->find(key);
+    if (grid == nullptr) return;
+    if (!grid->is_object()) refuse("{}: {} is not an object", ours->name, key);
+    check_grid(*ours->object(key));
+  };
+  check("volume", checkVolume);
+  check("neighborhood", checkNeighborhood);
+}
+
+void checkNode(const Entry& node) {
+  node.index("mesh", "meshes");
+  node.index("camera", "cameras");
+  node.index("skin", "skins");
+  node.text("name");
+  checkNodeNumbers(node, "children");
+  node.numbers("matrix", 16);
+  node.numbers("translation", 3);
+  node.numbers("rotation", 4);
+  node.numbers("scale", 3);
+  node.numbers("weights");
+  if (const auto light = node.extension("KHR_lights_punctual")) {
+    const json& lights = memberOf(node.document.json, {"extensions", "KHR_lights_punctual", "lights"});
+    if (!light->below("light", lights.size(), "lights")) refuse("{} names no light", light->name);
+  }
+  if (const auto instances = node.extension("EXT_mesh_gpu_instancing")) {
+    const auto attributes = instances->object("attributes");
+    if (!attributes) refuse("{} has no attributes", instances->name);
+    attributes->indexAll("accessors");
+  }
+  checkGrids(node);
+}
+
+void checkAnimation(const Entry& animation) {
+  animation.text("name");
+  animation.forEach("samplers", animation.name + ", sampler", [](const Entry& sampler) {
+    for (const char* key : {"input", "output"})
+      if (!sampler.index(key, "accessors")) refuse("{} has no {}", sampler.name, key);
   });
+  const std::size_t samplers = animation.list("samplers").size();
+  animation.forEach("channels", animation.name + ", channel", [&](const Entry& channel) {
+    channel.below("sampler", samplers, "samplers");
+    const Entry target = *channel.object("target");  // mends have left out channels without one
+    target.index("node", "nodes");
+    target.text("path");
+  });
+}
+
+void checkSkin(const Entry& skin) {
+  if (skin.list("joints").empty()) refuse("{} has no joints", skin.name);
+  checkNodeNumbers(skin, "joints");
+  skin.index("inverseBindMatrices", "accessors");
+}
+
+// This limits accessors without a bufferView (all zeros), since such a claim costs a file nothing.
+constexpr std::uint64_t kMaxImplicitCount = 1u << 24;
+
+// Returns the bytes of one element; columns of matrices start at multiples of four.
+std::uint64_t elementBytes(const std::string& type, std::uint64_t component) {
+  const std::uint64_t components = componentsOf(type);
+  if (components == 0 || !type.starts_with("MAT")) return components * component;
+  const auto columns = static_cast<std::uint64_t>(type.back() - '0');
+  return columns * ((columns * component + 3) / 4 * 4);
+}
+
+// Returns the object of a list that the owner must name.
+Entry named(const Entry& owner, const char* key, const char* list) {
+  const auto i = owner.index(key, list);
+  if (!i) refuse("{} has no {}", owner.name, key);
+  return {owner.document.json[list][*i], fmt::format("{} {}", key, *i), owner.document};
+}
+
+// Checks that `count` elements of `element` bytes fit at byteOffset of the object's bufferView.
+void checkExtent(const Entry& object, std::uint64_t count, std::uint64_t element, bool strided) {
+  const Entry view = named(object, "bufferView", "bufferViews");
+  const std::uint64_t offset = object.number("byteOffset").value_or(0);
+  const std::uint64_t available = view.required("byteLength");
+  const std::uint64_t stride = strided ? view.number("byteStride").value_or(element) : element;
+  if (stride < element)
+    refuse("{}: byteStride {} is less than an element of {} bytes", object.name, stride, element);
+  // This divides because count * stride may exceed 2^64.
+  const bool fits = offset <= available && element <= available - offset &&
+                    (count - 1) <= (available - offset - element) / stride;
+  if (!fits)
+    refuse("{}: {} elements do not fit the {} bytes of {}", object.name, count, available, view.name);
+}
+
+void checkSparse(const Entry& sparse, std::uint64_t count, std::uint64_t element) {
+  const std::uint64_t replaced = sparse.required("count");
+  if (replaced == 0 || replaced > count)
+    refuse("{}: replaces {} of {} elements", sparse.name, replaced, count);
+  const auto indices = sparse.object("indices"), values = sparse.object("values");
+  if (!indices || !values) refuse("{} has no indices or no values", sparse.name);
+  const std::uint64_t type = indices->required("componentType");
+  if (type != 5121 && type != 5123 && type != 5125)
+    refuse("{}: componentType {} is no index type", indices->name, type);
+  checkExtent(*indices, replaced, componentBytes(type), /*strided=*/false);
+  checkExtent(*values, replaced, element, /*strided=*/false);
+}
+
+void checkAccessor(const Entry& accessor) {
+  const std::uint64_t component = componentBytes(accessor.required("componentType"));
+  if (component == 0) refuse("{} has an unknown componentType", accessor.name);
+  const std::uint64_t element = elementBytes(accessor.text("type"), component);
+  if (element == 0) refuse("{} has an unknown type", accessor.name);
+  const std::uint64_t count = accessor.required("count");
+  if (count == 0) return;
+  if (accessor.find("bufferView") != nullptr)
+    checkExtent(accessor, count, element, /*strided=*/true);
+  else if (count > kMaxImplicitCount)
+    refuse("{} claims {} elements without a bufferView", accessor.name, count);
+  if (const auto sparse = accessor.object("sparse")) checkSparse(*sparse, count, element);
+}
+
+// Checks the bytes of a view, or of what the extension decodes into it. Returns how many they are.
+std::uint64_t checkBytes(const Entry& object) {
+  const Entry buffer = named(object, "buffer", "buffers");
+  const std::uint64_t available = buffer.required("byteLength");
+  const std::uint64_t offset = object.number("byteOffset").value_or(0);
+  const std::uint64_t length = object.required("byteLength");
+  if (offset > available || length > available - offset)
+    refuse("{} reaches from byte {} to {} of the {} bytes of {}", object.name, offset, offset + length,
+           available, buffer.name);
+  return length;
+}
+
+// Checks modes, strides and filters as the extension specifies them; the decoders rely on this.
+void checkMeshopt(const Entry& coded, std::uint64_t bytes) {
+  if (checkBytes(coded) == 0) refuse("{} has no bytes", coded.name);
+  const std::uint64_t stride = coded.required("byteStride"), count = coded.required("count");
+  if (stride == 0 || stride > 256 || count == 0 || count > bytes / stride || count * stride != bytes)
+    refuse("{}: {} elements of {} bytes are not its bytes", coded.name, count, stride);
+  const std::string mode = coded.text("mode"), filter = coded.text("filter");
+  const bool indices = mode == "TRIANGLES" || mode == "INDICES";
+  if (!(mode == "ATTRIBUTES" && stride % 4 == 0) && !(indices && (stride == 2 || stride == 4)))
+    refuse("{}: mode \"{}\" does not go with a stride of {}", coded.name, mode, stride);
+  if (mode == "TRIANGLES" && count % 3 != 0) refuse("{} is not whole triangles", coded.name);
+  const bool filter_fits =
+      filter.empty() || filter == "NONE" ||
+      (mode == "ATTRIBUTES" && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                                (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL"));
+  if (!filter_fits) refuse("{}: filter \"{}\" does not go with it", coded.name, filter);
+}
+
+void checkView(const Entry& view) {
+  const std::uint64_t length = checkBytes(view);
+  view.number("byteStride");
+  if (const auto coded = view.extension(kMeshopt)) checkMeshopt(*coded, length);
+}
+
+// Checks the objects of a list, after all objects that may refer to them. Where they are wrong and nothing
+// reads them, `empty` is put in their place.
+template <typename Check>
+void checkList(const Entry& root, const char* key, const char* what, const json& empty, Check check) {
+  std::size_t i = 0;
+  root.forEach(key, what, [&](const Entry& entry) {
+    if (root.document.used[key].contains(i++)) return check(entry);
+    try {
+      check(entry);
+      if (memberOf(entry.json, {"byteLength"}) == 0) refuse("{} has no bytes", entry.name);
+    } catch (const Error& error) {
+      root.document.warnings.push_back(error.problem + ", but nothing reads it");
+      entry.json = empty;
+      check(entry);
+    }
+  });
+}
+
+void checkBuffers(const Entry& root) {
+  root.forEach("buffers", "buffer", [](const Entry& buffer) {
+    buffer.required("byteLength");
+    buffer.text("uri");
+  });
+  checkList(root, "accessors", "accessor", {{"componentType", 5126u}, {"count", 0u}, {"type", "SCALAR"}},
+            checkAccessor);
+  checkList(root, "bufferViews", "bufferView", {{"buffer", 0u}, {"byteLength", 0u}}, checkView);
 }
 
 }  // namespace
 
-Result<void> checkDocument(nlohmann::json& document, const std::string& file,
-                           std::vector<std::string>& warnings) {
+void checkDocument(nlohmann::json& document, std::vector<std::string>& warnings) {
+  CheckedDocument checked{document, warnings};
+  const Entry root{document, "the document", checked};
   try {
-    const Entry entry{document, "the document", warnings};
-    for (const auto mend :
-         {mendCameras, mendMembers, mendMaterials, mendLights, mendPrimitives, mendAnimations, mendUnused})
-      mend(entry);
-    const Root root{{document, "the document"}};
     checkAsset(root);
+    for (const auto mend :
+         {mendCameras, mendMembers, mendMaterials, mendLights, mendPrimitives, mendAnimations})
+      mend(root);
     checkExtensions(root);
+    root.forEach("images", "image", [](const Entry& image) { image.index("bufferView", "bufferViews"); });
+    root.forEach("textures", "texture", [](const Entry& texture) {
+      texture.index("source", "images");
+      texture.index("sampler", "samplers");
+    });
+    root.forEach("meshes", "mesh", checkMesh);
+    root.forEach("nodes", "node", checkNode);
+    root.forEach("scenes", "scene", [](const Entry& scene) { checkNodeNumbers(scene, "nodes"); });
+    root.index("scene", "scenes");
+    root.forEach("animations", "animation", checkAnimation);
+    root.forEach("skins", "skin", checkSkin);
     checkBuffers(root);
-    checkMaterials(root);
-    checkMeshes(root);
-    checkNodes(root);
-    return {};
-  } catch (const BrokenField& broken) {
-    return fail(file, broken.problem, broken.hint);
-  } catch (const nlohmann::json::exception& exception) {
-    return fail(file, fmt::format("is not glTF 2.0 ({})", reasonOf(exception)), BrokenField{}.hint);
-  }
-}
-
-// Refuses scenes with sizes that single precision cannot trace.
-
-namespace {
-
-// Areas are products of two lengths and their squares of four, which must neither underflow nor overflow.
-// Both limits leave a factor of ten to where tracing was seen to fail.
-constexpr double kLeastSide_m = 1e-8, kMostDistance_m = 1e8;
-
-}  // namespace
-
-Result<void> checkSizes(const Document& document, const NodeMap& map, const Scene& scene) {
-  std::vector<PlacedBox> boxes;
-  for (const SceneMesh& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
-  const std::vector<glm::dmat4> world = sceneWorldTransforms(map, scene);
-  // The farthest place of each node and those above it: if two cancel each other out, digits are lost.
-  std::vector<double> farthest(world.size());
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    farthest[n] = largest(glm::dvec3(world[n][3]));
-    if (const std::int32_t parent = scene.nodes[n].parent; parent >= 0)
-      farthest[n] = std::max(farthest[n], farthest[static_cast<std::size_t>(parent)]);
-    if (scene.nodes[n].mesh < 0) continue;
-    const PlacedBox& box = boxes[static_cast<std::size_t>(scene.nodes[n].mesh)];
-    if (box.empty()) continue;
-    PlacedBox there;
-    there.add(box, world[n]);
-    const double distance = std::max({largest(there.low), largest(there.high), farthest[n]});
-    if (!(distance <= kMostDistance_m))  // or not a number
-      return fail(
-          document.file(),
-          fmt::format("node {} (\"{}\") reaches {:.3g} m from the origin, where floats cannot be traced", n,
-                      scene.nodes[n].name, distance),
-          fmt::format("scale or move it to within {:g} m", kMostDistance_m));
-    if (there.side() > 0.0 && there.side() < kLeastSide_m)
-      return fail(document.file(),
-                  fmt::format("node {} (\"{}\") is only {:.3g} m large, which floats cannot trace", n,
-                              scene.nodes[n].name, there.side()),
-                  fmt::format("scale it to {:g} m or more, or to 0 to hide it", kLeastSide_m));
-  }
-  return {};
-}
-
-// Finds sky domes that exporters leave in a scene. Viewers without light from outside need them as a
-// backdrop; here they keep that light away.
-
-namespace {
-
-struct Bounds {
-  glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
-  void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool contains(const glm::dvec3& p) const {
-    return glm::all(glm::lessThan(low, p)) && glm::all(glm::lessThan(p, high));
-  }
-  double size() const { return low.x > high.x ? 0.0 : glm::distance(low, high); }
-};
-
-using Triangle = std::array<glm::dvec3, 3>;
-
-template <typename Visit>
-void forEachTriangle(const SceneMesh& mesh, const glm::dmat4& matrix, Visit visit) {
-  for (const ScenePrimitive& primitive : mesh.primitives)
-    for (std::size_t i = 0; i + 2 < primitive.mesh.indices.size(); i += 3) {
-      Triangle triangle;
-      for (std::size_t c = 0; c < 3; ++c)
-        triangle[c] =
-            glm::dvec3(matrix * glm::dvec4(primitive.mesh.positions[primitive.mesh.indices[i + c]], 1.0));
-      visit(triangle);
-    }
-}
-
-bool isOpaque(const Scene& scene, const SceneMesh& mesh) {
-  return std::ranges::all_of(mesh.primitives, [&](const ScenePrimitive& primitive) {
-    return primitive.material < 0 ||
-           scene.materials[static_cast<std::size_t>(primitive.material)].alpha_mode ==
-               gltf::AlphaMode::Opaque;
-  });
-}
-
-bool namesSky(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name.find("sky") != std::string::npos || name.find("dome") != std::string::npos ||
-         name.find("hdri") != std::string::npos;
-}
-
-// Returns whether most faces lie on the sphere that fits the corners best, in the mesh's own space, since
-// domes are often flattened by their node. A hemisphere may have a floor.
-bool isRound(const SceneMesh& mesh) {
-  constexpr double kShare = 0.6, kInner = 0.85, kOuter = 1.05;  // of the area; of the radius
-  // Solves |p|² = 2 c·p + k for c and k by least squares.
-  Bounds bounds;
-  forEachTriangle(mesh, glm::dmat4(1.0), [&](const Triangle& t) {
-    for (const glm::dvec3& p : t) bounds.add(p);
-  });
-  const glm::dvec3 middle = 0.5 * (bounds.low + bounds.high);
-  const double size = bounds.size();
-  if (!(size > 0.0)) return false;
-  glm::dmat4 left(0.0);
-  glm::dvec4 right(0.0);
-  double corners = 0.0;
-  forEachTriangle(mesh, glm::dmat4(1.0), [&](const Triangle& t) {
-    for (const glm::dvec3& corner : t) {
-      const glm::dvec3 p = (corner - middle) / size;
-      const glm::dvec4 row(2.0 * p, 1.0);
-      left += glm::outerProduct(row, row);
-      right += row * glm::dot(p, p);
-      ++corners;
-    }
-  });
-  left /= corners, right /= corners;
-  if (std::abs(glm::determinant(left)) < 1e-9) return false;  // flat
-  const glm::dvec4 fit = glm::inverse(left) * right;
-  const glm::dvec3 centre(fit);
-  const double radius = std::sqrt(std::max(fit.w + glm::dot(centre, centre), 0.0));
-  double all = 0.0, on_sphere = 0.0;
-  forEachTriangle(mesh, glm::dmat4(1.0), [&](const Triangle& t) {
-    const double area = glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
-    const double distance = glm::distance(((t[0] + t[1] + t[2]) / 3.0 - middle) / size, centre);
-    all += area;
-    if (distance > kInner * radius && distance < kOuter * radius) on_sphere += area;
-  });
-  return on_sphere > kShare * all;
-}
-
-bool hits(const Triangle& t, const glm::dvec3& from, const glm::dvec3& dir) {
-  const glm::dvec3 a = t[0] - from, b = t[1] - from, c = t[2] - from;
-  const double u = glm::dot(dir, glm::cross(a, b)), v = glm::dot(dir, glm::cross(b, c)),
-               w = glm::dot(dir, glm::cross(c, a));
-  if (!((u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0))) return false;
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  return glm::dot(normal, a) * glm::dot(normal, dir) > 0.0;
-}
-
-// Returns whether the mesh hides the whole sky above a point.
-bool hidesTheSky(const SceneMesh& mesh, const glm::dmat4& world_from_mesh, const glm::dvec3& from) {
-  constexpr int kDirections = 200;
-  constexpr double kLowest = 0.03;  // sine of the lowest elevation
-  std::array<bool, kDirections> hidden{};
-  std::array<glm::dvec3, kDirections> directions;
-  for (int i = 0; i < kDirections; ++i) {  // on a spiral of equal areas
-    const double y = kLowest + (1.0 - kLowest) * (i + 0.5) / kDirections, r = std::sqrt(1.0 - y * y),
-                 turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
-    directions[static_cast<std::size_t>(i)] = {r * std::cos(turn), y, r * std::sin(turn)};
-  }
-  forEachTriangle(mesh, world_from_mesh, [&](const Triangle& t) {
-    for (std::size_t i = 0; i < kDirections; ++i) hidden[i] = hidden[i] || hits(t, from, directions[i]);
-  });
-  return std::ranges::all_of(hidden, [](bool h) { return h; });
-}
-
-}  // namespace
-
-void warnAboutDomes(Scene& scene) {
-  constexpr double kLeastShare = 0.25;  // of the scene's size; the ground may be larger than the dome
-  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
-  std::vector<Bounds> bounds(scene.nodes.size());
-  Bounds all;
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
-    if (const std::int32_t mesh = scene.nodes[n].mesh; mesh >= 0)
-      forEachTriangle(scene.meshes[static_cast<std::size_t>(mesh)], glm::dmat4(world[n]),
-                      [&](const Triangle& t) {
-                        for (const glm::dvec3& p : t) bounds[n].add(p), all.add(p);
-                      });
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    const gltf::Node& node = scene.nodes[n];
-    if (node.mesh < 0 || bounds[n].size() < kLeastShare * all.size()) continue;
-    const SceneMesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
-    if (!isOpaque(scene, mesh) || !(namesSky(node.name) || namesSky(mesh.name) || isRound(mesh))) continue;
-    Bounds rest;
-    for (std::size_t other = 0; other < bounds.size(); ++other)
-      if (other != n && scene.nodes[other].mesh >= 0)
-        rest.add(bounds[other].low), rest.add(bounds[other].high);
-    const glm::dvec3 middle = 0.5 * (rest.low + rest.high);
-    if (!(rest.size() > 0.0) || !bounds[n].contains(middle) ||
-        !hidesTheSky(mesh, glm::dmat4(world[n]), middle))
-      continue;
-    scene.warnings.push_back(fmt::format(
-        "node {} (\"{}\"): it lies around the scene and keeps all light from outside away; if it is a "
-        "sky dome, delete it, and give its picture as --light",
-        n, node.name));
-    return;
+  } catch (const json::exception& exception) {
+    refuse("is not glTF 2.0 ({})", reasonOf(exception));
   }
 }
 

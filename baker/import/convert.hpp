@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 
 #include "baker/import/document.hpp"
 #include "baker/import/scene.hpp"
-#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
 // Converts materials, and the textures and images that they use. Materials are numbered as in the file.
-Result<void> convertMaterials(const Document& document, Scene& scene);
+void convertMaterials(const Document& document, Scene& scene);
 
 // Converts punctual lights, numbered as in the file.
 void convertLights(const Document& document, Scene& scene);
@@ -32,8 +32,14 @@ struct NodeMap {
 
 // Converts the nodes of the default scene, renumbered, and their cameras. Meshes keep the file's numbers for
 // now.
-Result<NodeMap> convertNodes(const Document& document, Scene& scene);
-// Returns the node's own transform, from its matrix or its translation, rotation and scale.
+NodeMap convertNodes(const Document& document, Scene& scene);
+// Holds translation, rotation and scale of a node that has no matrix. The rotation is unit.
+struct NodeParts {
+  glm::dvec3 translation{0.0}, scale{1.0};
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+};
+NodeParts partsOf(const nlohmann::json& node);
+// Returns the node's own transform, from its matrix or its parts.
 glm::dmat4 localMatrix(const nlohmann::json& node);
 // Returns world_from_node of every node of the file, including nodes outside all scenes (joints may be).
 std::vector<glm::dmat4> fileWorldTransforms(const Document& document);
@@ -48,30 +54,28 @@ struct MeshPose {
 };
 // Reads one primitive of a checked document as posed triangles, from plain or Draco data, and lists, strips
 // or fans. Returns an empty mesh, and adds a warning, if it has no triangles. The mesh is not cleaned yet.
-Result<bundle::MeshData> readPrimitive(const Document& document, const nlohmann::json& primitive,
-                                       const MeshPose& pose, bool tangents, const std::string& name,
-                                       std::vector<std::string>& warnings);
+bundle::MeshData readPrimitive(const Document& document, const nlohmann::json& primitive,
+                               const MeshPose& pose, bool tangents, const std::string& name,
+                               std::vector<std::string>& warnings);
 
 // Converts the meshes that nodes of the scene draw, at rest. A mesh with a skin, or with other weights of its
 // morph targets, becomes a mesh of its own. Nodes get the scene's mesh numbers.
-Result<void> convertMeshes(const Document& document, NodeMap& map, Scene& scene);
+void convertMeshes(const Document& document, NodeMap& map, Scene& scene);
 
 // Converts channels that move nodes of the scene; these nodes become animated and get separate transform
 // parts.
-Result<void> convertAnimations(const Document& document, const NodeMap& map, Scene& scene);
+void convertAnimations(const Document& document, const NodeMap& map, Scene& scene);
 
 // Makes a child node for every instance of EXT_mesh_gpu_instancing. This follows the other conversions of
 // nodes, since it adds some.
-Result<void> convertInstances(const Document& document, NodeMap& map, Scene& scene);
+void convertInstances(const Document& document, NodeMap& map, Scene& scene);
 
 // Converts extras.lambent.volume and extras.lambent.neighborhood to Scene::volumes and Scene::neighborhoods.
-Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& scene);
-
-// Checks that every body is of a size, and at a place, that can be traced.
-Result<void> checkSizes(const Document& document, const NodeMap& map, const Scene& scene);
+void convertGrids(const Document& document, const NodeMap& map, Scene& scene);
 
 // Subtracts Scene::origin from the places of all nodes, in double, and rounds them only then. The origin is 0
-// where the scene stands near that of the file.
+// where the scene stands near that of the file. Refuses bodies of a size, or at a place, that cannot be
+// traced.
 void placeNearOrigin(NodeMap map, Scene& scene);
 
 // Warns about a body around all others that keeps light from outside away, such as a sky dome.

@@ -60,15 +60,13 @@ constexpr double kFewTriangles = 0.005;
 constexpr std::size_t kLeastPart = 12;
 constexpr float kUsualSteps = 262144.0f;  // of a lattice along what it is for
 
-float longestEdge(const MeshData& mesh, std::size_t triangle) {
-  const auto corner = [&](std::size_t c) { return mesh.positions[mesh.indices[3 * triangle + c]]; };
-  return std::max({glm::distance(corner(0), corner(1)), glm::distance(corner(1), corner(2)),
-                   glm::distance(corner(2), corner(0))});
-}
-
 std::vector<float> longestEdges(const MeshData& mesh) {
-  std::vector<float> edges(mesh.indices.size() / 3);
-  for (std::size_t t = 0; t < edges.size(); ++t) edges[t] = longestEdge(mesh, t);
+  std::vector<float> edges;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t c) { return mesh.positions[mesh.indices[i + c]]; };
+    edges.push_back(std::max({glm::distance(corner(0), corner(1)), glm::distance(corner(1), corner(2)),
+                              glm::distance(corner(2), corner(0))}));
+  }
   return edges;
 }
 

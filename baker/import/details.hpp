@@ -12,8 +12,10 @@
 #include <vector>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "baker/import/scene.hpp"
 
@@ -42,6 +44,10 @@ struct PlacedBox {
   bool empty() const { return low.x > high.x; }
   glm::dvec3 center() const { return 0.5 * (low + high); }
   double side() const { return largest(high - low); }
+  double diagonal() const { return empty() ? 0.0 : glm::distance(low, high); }
+  bool contains(const glm::dvec3& point) const {
+    return glm::all(glm::lessThan(low, point)) && glm::all(glm::lessThan(point, high));
+  }
   void add(const glm::dvec3& point) {
     low = glm::min(low, point);
     high = glm::max(high, point);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,54 +21,31 @@ using nlohmann::json;
 // Mends walk the document recursively, so the depth must be limited.
 constexpr int kMaxDepth = 64;
 
-// Returns how many bytes the UTF-8 sequence at `at` has, or 0 if there is none.
-std::size_t sequenceBytes(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
-  const unsigned char first = byte(at);
-  if (first < 0x80) return 1;
-  const std::size_t bytes = first >= 0xc2 && first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-  if (first < 0xc2 || first > 0xf4) return 0;
-  // Overlong forms, surrogates, and what is past U+10FFFF.
-  const unsigned char second = byte(at + 1);
-  if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f))
-    return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if ((byte(at + i) & 0xc0) != 0x80) return 0;
-  return bytes;
-}
-
-// Takes bytes that are no UTF-8 for Latin-1, in which exporters write names.
-void makeUtf8(std::string& text, std::vector<std::string>& warnings) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    if (const std::size_t bytes = sequenceBytes(text, at); bytes > 0) {
-      out.append(text, at, bytes);
-      at += bytes;
-    } else {
-      const auto byte = static_cast<unsigned char>(text[at++]);
-      out += {static_cast<char>(0xc0 | (byte >> 6)), static_cast<char>(0x80 | (byte & 0x3f))};
-    }
-  }
-  if (out == text) return;
-  warnings.emplace_back("its JSON is not UTF-8 and is read as Latin-1");
-  text = std::move(out);
-}
-
-Result<json> parseJson(const std::string& text, const std::string& file) {
+json parseJson(const std::string& text, std::vector<std::string>& warnings) {
   bool too_deep = false;
+  const auto shallow = [&](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > kMaxDepth;
+    return !too_deep;
+  };
+  json document;
   try {
-    json document = json::parse(text, [&](int depth, json::parse_event_t, json&) {
-      too_deep = too_deep || depth > kMaxDepth;
-      return !too_deep;
-    });
-    if (too_deep)
-      return fail(file, fmt::format("nests JSON deeper than {} levels", kMaxDepth), "simplify its extras");
-    return document;
+    document = json::parse(text, shallow);
   } catch (const json::exception& exception) {
-    return fail(file, fmt::format("is not glTF: its JSON cannot be parsed ({})", reasonOf(exception)),
-                kExportAgain);
+    // Some exporters write names in Latin-1.
+    std::string utf8;
+    for (const char c : text)
+      if (const auto byte = static_cast<unsigned char>(c); byte < 0x80)
+        utf8 += c;
+      else
+        utf8 += {static_cast<char>(0xc0 | (byte >> 6)), static_cast<char>(0x80 | (byte & 0x3f))};
+    if (utf8 != text) document = json::parse(utf8, shallow, /*allow_exceptions=*/false);
+    if (utf8 == text || document.is_discarded())
+      refuse("is not glTF: its JSON cannot be parsed ({})", reasonOf(exception));
+    warnings.emplace_back("its JSON is not UTF-8 and is read as Latin-1");
   }
+  if (too_deep)
+    throw Error{{}, fmt::format("nests JSON deeper than {} levels", kMaxDepth), "simplify its extras"};
+  return document;
 }
 
 // Decodes EXT_meshopt_compression: bufferViews coded by meshoptimizer (with the codecs and filters of the
@@ -79,10 +56,10 @@ Result<json> parseJson(const std::string& text, const std::string& file) {
 // byte for 12. A file that claims more is refused before memory is taken.
 constexpr std::size_t kMeshoptLargestRatio = 256;
 
-// Decodes one view by its checked extension object. `view` has its count * stride bytes. Errors name
-// `subject` and `object`: the bytes are damaged.
-Result<void> decodeMeshopt(const nlohmann::json& extension, std::span<const std::byte> coded,
-                           std::span<std::byte> view, const std::string& subject, const std::string& object) {
+// Decodes one view by its checked extension object. `view` has its count * stride bytes. Errors name its
+// number: the bytes are damaged.
+void decodeMeshopt(const nlohmann::json& extension, std::span<const std::byte> coded,
+                   std::span<std::byte> view, std::size_t number) {
   const auto count = extension["count"].get<std::size_t>(),
              stride = extension["byteStride"].get<std::size_t>();
   const std::string mode = extension["mode"].get<std::string>(), filter = extension.value("filter", "NONE");
@@ -95,150 +72,75 @@ Result<void> decodeMeshopt(const nlohmann::json& extension, std::span<const std:
   else
     failed = meshopt_decodeIndexSequence(view.data(), count, stride, bytes, coded.size());
   if (failed != 0)
-    return fail(subject,
-                fmt::format("{}: its {} bytes are not {} coded by meshoptimizer", object, coded.size(), mode),
-                kExportAgain);
+    refuse("bufferView {}: its {} bytes are not {} coded by meshoptimizer", number, coded.size(), mode);
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(view.data(), count, stride);
   if (filter == "QUATERNION") meshopt_decodeFilterQuat(view.data(), count, stride);
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(view.data(), count, stride);
-  return {};
 }
 
-// Returns how many bytes are covered by views, counting shared bytes once.
-std::size_t bytesCovered(std::vector<std::pair<std::size_t, std::size_t>> ranges) {
-  std::sort(ranges.begin(), ranges.end());
-  std::size_t covered = 0, end = 0;
-  for (const auto& [first, last] : ranges) {
-    if (last <= end) continue;
-    covered += last - std::max(first, end);
-    end = last;
+// Loads the buffers of a checked document, with as many bytes as each announces: from files beside it, data:
+// URIs and the binary chunk. A buffer without bytes of its own is made of its views that meshoptimizer coded;
+// buffers that have bytes keep them.
+void loadBuffers(Document& document, std::vector<std::byte> binary) {
+  std::vector<bool> bare;  // by buffer
+  for (const json& buffer : document.list("buffers")) {
+    const std::size_t i = bare.size(), length = buffer.at("byteLength").get<std::size_t>();
+    const std::string object = fmt::format("buffer {}", i), uri = buffer.value("uri", "");
+    bare.push_back(uri.empty() && (i != 0 || binary.empty()));
+    std::vector<std::byte>& bytes = document.buffers.emplace_back();
+    if (length == 0 || bare.back()) continue;
+    bytes = uri.empty() ? std::exchange(binary, {})
+                        : readUri(document.path, uri, document.options, object, document.warnings);
+    if (bytes.size() < length)
+      throw Error{{},
+                  fmt::format("{} has {} bytes of {}", object, bytes.size(), length),
+                  "the file is truncated; copy or export it again"};
+    bytes.resize(length);
   }
-  return covered;
-}
-
-// Gives the buffers of a checked document by number. They come from files beside it, data: URIs, the binary
-// chunk, or views coded by meshoptimizer. Each is found, bounds-checked and read here.
-class BufferSource {
- public:
-  BufferSource(Document& document, std::vector<std::byte> binary)
-      : document_(document), binary_(std::move(binary)) {
-    for (const json& buffer : document.list("buffers"))
-      wanted_.push_back({buffer.value("uri", ""), buffer.at("byteLength").get<std::size_t>(), {}});
-    // Views that meshoptimizer coded belong to a buffer without bytes of its own; buffers that have bytes
-    // keep them.
+  const auto forEachCoded = [&](auto visit) {  // visit(view, extension, buffer)
     for (std::size_t v = 0; v < document.list("bufferViews").size(); ++v) {
-      const json& view = document.at("bufferViews", v);
-      Wanted& buffer = wanted_[view.at("buffer").get<std::size_t>()];
-      const json& extension = memberOf(view, {"extensions", kMeshopt});
-      if (!buffer.uri.empty() || extension.is_null()) continue;
-      buffer.coded.push_back(
-          {v, view.value("byteOffset", std::size_t{0}), view.at("byteLength").get<std::size_t>(), extension});
-      sources_[buffer.coded.back().source()] = {};
+      const json& extension = memberOf(document.at("bufferViews", v), {"extensions", kMeshopt});
+      const auto buffer = document.at("bufferViews", v).at("buffer").get<std::size_t>();
+      if (!extension.is_null() && bare[buffer]) visit(v, extension, buffer);
     }
-  }
-
-  // Returns as many bytes as the buffer announces. Errors name the file and "buffer 2".
-  Result<std::vector<std::byte>> read(std::size_t i) {
-    if (wanted_[i].length == 0) return std::vector<std::byte>();
-    auto bytes = wanted_[i].coded.empty() ? load(i) : decode(wanted_[i]);
-    if (bytes) bytes->resize(wanted_[i].length);
-    return bytes;
-  }
-
- private:
-  struct CodedView {
-    std::size_t index = 0, offset = 0, length = 0;
-    const json& extension;
-
-    std::size_t source() const { return extension.at("buffer").get<std::size_t>(); }
-    std::size_t first() const { return extension.value("byteOffset", std::size_t{0}); }
-    std::size_t bytes() const { return extension.at("byteLength").get<std::size_t>(); }
   };
-  struct Wanted {
-    std::string uri;
-    std::size_t length = 0;
-    std::vector<CodedView> coded;  // if not empty, the buffer is made of these
-  };
-
-  // Makes a buffer from its views that meshoptimizer coded.
-  Result<std::vector<std::byte>> decode(const Wanted& buffer) {
-    std::map<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>> ranges;  // by source buffer
-    for (const CodedView& view : buffer.coded)
-      ranges[view.source()].emplace_back(view.first(), view.first() + view.bytes());
+  std::map<std::size_t, std::set<std::size_t>> sources;  // by bare buffer
+  forEachCoded([&](std::size_t, const json& extension, std::size_t buffer) {
+    sources[buffer].insert(extension.at("buffer").get<std::size_t>());
+  });
+  for (std::size_t i = 0; i < bare.size(); ++i) {
+    const auto length = document.at("buffers", i).at("byteLength").get<std::size_t>();
+    if (!bare[i] || length == 0) continue;
     std::size_t coded_bytes = 0;
-    for (const auto& [source, list] : ranges) coded_bytes += bytesCovered(list);
-    if (buffer.length / kMeshoptLargestRatio > coded_bytes)
-      return fail(document_.file(), fmt::format("claims {} bytes coded in {}", buffer.length, coded_bytes),
-                  kExportAgain);
-    std::vector<std::byte> bytes(buffer.length);
-    for (const CodedView& view : buffer.coded) {
-      if (sources_.at(view.source()).empty())
-        if (auto loaded = load(view.source()); !loaded) return loaded;
-      const auto coded =
-          std::span<const std::byte>(sources_.at(view.source())).subspan(view.first(), view.bytes());
-      const auto decoded =
-          decodeMeshopt(view.extension, coded, std::span(bytes).subspan(view.offset, view.length),
-                        document_.file(), fmt::format("bufferView {}", view.index));
-      if (!decoded) return failAgain(decoded.error());
-    }
-    return bytes;
+    for (const std::size_t source : sources[i])
+      coded_bytes += bare[source] ? 0 : document.buffers[source].size();
+    if (coded_bytes == 0) refuse("buffer {} has neither a URI nor a binary chunk", i);
+    if (length / kMeshoptLargestRatio > coded_bytes)
+      refuse("claims {} bytes coded in {}", length, coded_bytes);
+    document.buffers[i].resize(length);
   }
-
-  Result<std::vector<std::byte>> load(std::size_t i) {
-    const auto source = sources_.find(i);
-    if (source != sources_.end() && !source->second.empty()) return source->second;
-    const std::string& uri = wanted_[i].uri;
-    const std::string object = fmt::format("buffer {}", i);
-    std::vector<std::byte> bytes;
-    if (uri.empty()) {
-      if (i != 0 || binary_.empty())
-        return fail(document_.file(), object + " has neither a URI nor a binary chunk", kExportAgain);
-      bytes = std::exchange(binary_, {});
-    } else {
-      auto read = readUri(document_.path, uri, document_.options, object, document_.warnings);
-      if (!read) return read;
-      bytes = std::move(*read);
-    }
-    if (bytes.size() < wanted_[i].length)
-      return fail(document_.file(),
-                  fmt::format("{} has {} bytes of {}", object, bytes.size(), wanted_[i].length),
-                  "the file is truncated; copy or export it again");
-    if (source != sources_.end()) source->second = bytes;
-    return bytes;
-  }
-
-  Document& document_;
-  std::vector<Wanted> wanted_;
-  std::map<std::size_t, std::vector<std::byte>> sources_;  // that coded views read from; empty until loaded
-  std::vector<std::byte> binary_;
-};
+  forEachCoded([&](std::size_t v, const json& extension, std::size_t buffer) {
+    const auto source = extension.at("buffer").get<std::size_t>();
+    if (bare[source]) refuse("buffer {} has neither a URI nor a binary chunk", source);
+    const auto coded = std::span<const std::byte>(document.buffers[source])
+                           .subspan(extension.value("byteOffset", std::size_t{0}),
+                                    extension.at("byteLength").get<std::size_t>());
+    const json& view = document.at("bufferViews", v);
+    const auto decoded =
+        std::span(document.buffers[buffer])
+            .subspan(view.value("byteOffset", std::size_t{0}), view.at("byteLength").get<std::size_t>());
+    decodeMeshopt(extension, coded, decoded, v);
+  });
+}
 
 }  // namespace
 
-Result<Document> Document::open(const std::filesystem::path& path, const ImportOptions& options) {
-  const std::string file = path.string();
-  auto container = openContainer(path);
-  if (!container) return failAgain(std::move(container.error()));
-  Document document;
-  document.path = path;
-  document.options = options;
-  makeUtf8(container->json, document.warnings);
-  auto parsed = parseJson(container->json, file);
-  if (!parsed) return failAgain(std::move(parsed.error()));
-  document.json = std::move(*parsed);
-  if (auto checked = checkDocument(document.json, file, document.warnings); !checked)
-    return failAgain(std::move(checked.error()));
-  try {
-    BufferSource source(document, std::move(container->binary));
-    for (std::size_t i = 0; i < document.list("buffers").size(); ++i) {
-      auto bytes = source.read(i);
-      if (!bytes) return failAgain(std::move(bytes.error()));
-      document.buffers.push_back(std::move(*bytes));
-    }
-    return document;
-  } catch (const std::exception& exception) {
-    return fail(file, fmt::format("cannot be read ({})", reasonOf(exception)), kExportAgain);
-  }
+Document::Document(std::filesystem::path file, const ImportOptions& import)
+    : path(std::move(file)), options(import) {
+  Container container = orThrow(openContainer(path));
+  json = parseJson(container.json, warnings);
+  checkDocument(json, warnings);
+  loadBuffers(*this, std::move(container.binary));
 }
 
 namespace {
@@ -254,39 +156,35 @@ T load(const std::byte* bytes) {
   return value;
 }
 
-template <typename T>
-float integerToFloat(const std::byte* bytes, bool normalized) {
-  const auto value = static_cast<float>(load<T>(bytes));
-  if (!normalized) return value;
-  return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
+// Returns visit(number) of a component.
+template <typename Visit>
+auto visitNumber(const std::byte* bytes, std::uint32_t type, Visit visit) {
+  switch (type) {
+    case kByte:
+      return visit(load<std::int8_t>(bytes));
+    case kUnsignedByte:
+      return visit(load<std::uint8_t>(bytes));
+    case kShort:
+      return visit(load<std::int16_t>(bytes));
+    case kUnsignedShort:
+      return visit(load<std::uint16_t>(bytes));
+    case kUnsignedInt:
+      return visit(load<std::uint32_t>(bytes));
+    default:
+      return visit(load<float>(bytes));
+  }
 }
 
 float toFloat(const std::byte* bytes, std::uint32_t type, bool normalized) {
-  switch (type) {
-    case kByte:
-      return integerToFloat<std::int8_t>(bytes, normalized);
-    case kUnsignedByte:
-      return integerToFloat<std::uint8_t>(bytes, normalized);
-    case kShort:
-      return integerToFloat<std::int16_t>(bytes, normalized);
-    case kUnsignedShort:
-      return integerToFloat<std::uint16_t>(bytes, normalized);
-    case kUnsignedInt:
-      return integerToFloat<std::uint32_t>(bytes, normalized);
-    default:
-      return load<float>(bytes);
-  }
+  return visitNumber(bytes, type, [&]<typename T>(T number) {
+    const auto value = static_cast<float>(number);
+    if (std::is_same_v<T, float> || !normalized) return value;
+    return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
+  });
 }
 
 std::uint32_t toIndex(const std::byte* bytes, std::uint32_t type) {
-  switch (type) {
-    case kUnsignedByte:
-      return load<std::uint8_t>(bytes);
-    case kUnsignedShort:
-      return load<std::uint16_t>(bytes);
-    default:
-      return load<std::uint32_t>(bytes);
-  }
+  return visitNumber(bytes, type, [](auto number) { return static_cast<std::uint32_t>(number); });
 }
 
 // Calls put(i, bytes of the value) for every element of an accessor, and again for those that its sparse part
@@ -322,13 +220,12 @@ void forEachElement(const Document& document, const json& accessor, std::size_t 
 
 }  // namespace
 
-Result<Floats> readFloats(const Document& document, std::size_t index, const std::string& use,
-                          std::initializer_list<std::string_view> types, std::size_t components) {
+Floats readFloats(const Document& document, std::size_t index, const std::string& use,
+                  std::initializer_list<std::string_view> types, std::size_t components) {
   const json& accessor = document.at("accessors", index);
   const auto type = accessor.at("type").get<std::string>();
   if (std::ranges::find(types, type) == types.end())
-    return fail(document.file(), fmt::format("accessor {} ({}) has the wrong type", index, use),
-                kExportAgain);
+    refuse("accessor {} ({}) has the wrong type", index, use);
   const auto component = accessor.at("componentType").get<std::uint32_t>();
   const std::size_t stored = componentsOf(type), bytes = componentBytes(component);
   const bool normalized = memberOf(accessor, {"normalized"}) == true;
@@ -341,13 +238,12 @@ Result<Floats> readFloats(const Document& document, std::size_t index, const std
   return floats;
 }
 
-Result<std::vector<std::uint32_t>> readIndices(const Document& document, std::size_t index) {
+std::vector<std::uint32_t> readIndices(const Document& document, std::size_t index) {
   const json& accessor = document.at("accessors", index);
   const auto type = accessor.at("componentType").get<std::uint32_t>();
   if (accessor.at("type") != "SCALAR" ||
       (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt))
-    return fail(document.file(), fmt::format("accessor {} does not hold unsigned indices", index),
-                kExportAgain);
+    refuse("accessor {} does not hold unsigned indices", index);
   std::vector<std::uint32_t> indices(accessor.at("count").get<std::size_t>());
   forEachElement(document, accessor, componentBytes(type),
                  [&](std::size_t i, const std::byte* value) { indices[i] = toIndex(value, type); });

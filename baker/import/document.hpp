@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/import/scene_files.hpp"
-#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
@@ -26,8 +25,8 @@ struct Document {
   std::vector<std::vector<std::byte>> buffers;  // as many bytes as each announces
   std::vector<std::string> warnings;            // what was mended, one sentence each
 
-  // Errors: those of importScene() that concern the file and not its geometry.
-  static Result<Document> open(const std::filesystem::path& path, const ImportOptions& options = {});
+  // Throws the Errors of importScene() that concern the file and not its geometry.
+  Document(std::filesystem::path path, const ImportOptions& options);
 
   std::string file() const { return path.string(); }
   // Returns a top-level list, empty if it is absent.
@@ -45,6 +44,18 @@ struct Document {
   }
 };
 
+// Reads a member, if it is there: a number, or a list of numbers as a vector.
+template <typename T>
+void readMember(const nlohmann::json& object, const char* key, T& field) {
+  const auto found = object.find(key);
+  if (found == object.end()) return;
+  if constexpr (requires { T::length(); })
+    for (int c = 0; c < T::length(); ++c)
+      field[c] = found->at(static_cast<std::size_t>(c)).template get<typename T::value_type>();
+  else
+    found->get_to(field);
+}
+
 // Reads accessors of a checked document as floats or indices: plain, interleaved, normalised, sparse, or
 // without a bufferView (zeros). Integers become what glTF says: value / max if normalised, else the value
 // itself.
@@ -58,10 +69,10 @@ struct Floats {
 // Reads an accessor of one of these types ("VEC3"), into as many components as asked for (0: as stored);
 // components that the file lacks (VEC3 colours in a VEC4) are 1. Errors name the accessor and `use`
 // ("POSITION").
-Result<Floats> readFloats(const Document& document, std::size_t accessor, const std::string& use,
-                          std::initializer_list<std::string_view> types, std::size_t components = 0);
+Floats readFloats(const Document& document, std::size_t accessor, const std::string& use,
+                  std::initializer_list<std::string_view> types, std::size_t components = 0);
 
 // Reads an index accessor, sparse or not.
-Result<std::vector<std::uint32_t>> readIndices(const Document& document, std::size_t accessor);
+std::vector<std::uint32_t> readIndices(const Document& document, std::size_t accessor);
 
 }  // namespace lambent::baker

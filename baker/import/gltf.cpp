@@ -1,7 +1,6 @@
 #include "baker/import/gltf.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <map>
 #include <set>
 #include <string>
@@ -59,33 +58,26 @@ void foldWarnings(std::vector<std::string>& warnings) {
   warnings = std::move(kept);
 }
 
-Result<Scene> convert(const Document& document) {
+Scene convert(const Document& document) {
   Scene scene;
   scene.source = document.path;
   const std::set<std::string> extensions = extensionsOf(document);
   if (extensions.contains(std::string(bundle::kExtensionName)))
-    return fail(document.file(), "is a bundle, which was baked already",
-                "name the scene that it was made of");
+    throw Error{{}, "is a bundle, which was baked already", "name the scene that it was made of"};
   scene.warnings = document.warnings;
   warnAboutExtensions(extensions, scene);
-  if (auto materials = convertMaterials(document, scene); !materials)
-    return failAgain(std::move(materials.error()));
+  convertMaterials(document, scene);
   convertLights(document, scene);
-  auto map = convertNodes(document, scene);
-  if (!map) return failAgain(std::move(map.error()));
-  if (auto meshes = convertMeshes(document, *map, scene); !meshes)
-    return failAgain(std::move(meshes.error()));
-  if (auto animations = convertAnimations(document, *map, scene); !animations)
-    return failAgain(std::move(animations.error()));
-  if (auto instances = convertInstances(document, *map, scene); !instances)
-    return failAgain(std::move(instances.error()));
-  if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
-  if (auto sizes = checkSizes(document, *map, scene); !sizes) return failAgain(std::move(sizes.error()));
-  placeNearOrigin(std::move(*map), scene);
+  NodeMap map = convertNodes(document, scene);
+  convertMeshes(document, map, scene);
+  convertAnimations(document, map, scene);
+  convertInstances(document, map, scene);
+  convertGrids(document, map, scene);
+  placeNearOrigin(std::move(map), scene);
   warnAboutDomes(scene);
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())
-    return fail(document.file(), "has no triangles in its scene that have an area", "give it a mesh");
+    throw Error{{}, "has no triangles in its scene that have an area", "give it a mesh"};
   // The module that decodes images takes half a second to load. It is loaded here because the import counts
   // in no estimate of a bake. If it cannot be loaded, the first image says so.
   if (!scene.images.empty()) static_cast<void>(openImageIo());
@@ -95,13 +87,7 @@ Result<Scene> convert(const Document& document) {
 }  // namespace
 
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
-  auto document = Document::open(path, options);
-  if (!document) return failAgain(std::move(document.error()));
-  try {
-    return convert(*document);
-  } catch (const std::exception& exception) {
-    return fail(path.string(), fmt::format("cannot be imported ({})", reasonOf(exception)), kExportAgain);
-  }
+  return resultOf(path.string(), "imported", kExportAgain, [&] { return convert(Document(path, options)); });
 }
 
 }  // namespace lambent::baker

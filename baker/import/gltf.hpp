@@ -8,10 +8,15 @@
 #include <filesystem>
 
 #include "baker/import/scene.hpp"
-#include "baker/import/scene_files.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {
+
+struct ImportOptions {
+  // Lets buffers and images lie outside the scene's folder: absolute paths, "..", links that lead out. This
+  // is for scenes from a trusted place only, since a scene chooses which files are read.
+  bool allow_outside = false;
+};
 
 // Errors: missing or unreadable file, not glTF 2.0, geometry in an unknown extension, broken accessors or
 // buffers, or a scene without triangles and volumes.

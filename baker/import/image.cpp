@@ -5,22 +5,63 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include "baker/import/openimageio/module.hpp"
 #include "baker/import/scene_files.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+// Returns the file that holds this code: the program, or the library that another program has loaded.
+std::filesystem::path ownFile() {
+  Dl_info unused;
+  link_map* file = nullptr;
+  const auto* code = reinterpret_cast<const void*>(&ownFile);
+  std::error_code ignored;
+  if (::dladdr1(code, &unused, reinterpret_cast<void**>(&file), RTLD_DL_LINKMAP) != 0 && file &&
+      file->l_name[0] != '\0')
+    return std::filesystem::canonical(file->l_name, ignored);
+  return ownProgram().value_or(std::filesystem::path());
+}
+
+Result<const OpenImageIo*> loadModule() {
+  // It lies beside the library, in ../lib of the program (in a build folder as where it is installed), or
+  // where the loader looks.
+  constexpr const char *kFile = "liblambent-openimageio.so", *kSymbol = "lambent_openimageio";
+  const std::filesystem::path folder = ownFile().parent_path();
+  std::string path = kFile;
+  std::error_code ignored;
+  for (const std::filesystem::path& beside : {folder / kFile, folder.parent_path() / "lib" / kFile})
+    if (std::filesystem::exists(beside, ignored)) path = beside;
+  void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  const char* why = module ? nullptr : ::dlerror();
+  const void* symbol = module ? ::dlsym(module, kSymbol) : nullptr;
+  if (!symbol)
+    return fail(kFile, why ? why : "is not of this program", "install Lambent again, or build all of it");
+  return static_cast<const OpenImageIo*>(symbol);
+}
+
+}  // namespace
+
+Result<const OpenImageIo*> openImageIo() {
+  static const Result<const OpenImageIo*> kModule = loadModule();
+  return kModule;
+}
 
 namespace {
 
@@ -58,25 +99,25 @@ std::uint32_t u32(std::span<const std::byte> bytes, std::size_t at) {
 // Returns the PNG with only the chunks that its pixels need. The decoder writes its own lines to stderr about
 // others (colour profiles, above all) and about wrong checksums, and leaks memory if the file ends early, so
 // those are errors here. They name `subject`.
-Result<std::vector<std::byte>> essentialPng(std::span<const std::byte> png, const std::string& subject) {
-  const auto truncated = [&] { return fail(subject, "is truncated", "save it again"); };
-  if (png.size() < kSignature) return truncated();
+std::vector<std::byte> essentialPng(std::span<const std::byte> png, const std::string& subject) {
+  const Error truncated{subject, "is truncated", "save it again"};
+  if (png.size() < kSignature) throw truncated;
   std::vector<std::byte> out(png.begin(), png.begin() + kSignature);
   for (std::size_t at = kSignature; at + kHead + kChecksum <= png.size();) {
     const std::size_t length = u32(png, at);
-    if (length > png.size() - at - kHead - kChecksum) return truncated();
+    if (length > png.size() - at - kHead - kChecksum) throw truncated;
     const auto chunk = png.subspan(at, kHead + length + kChecksum);
     const std::string_view type(reinterpret_cast<const char*>(&chunk[4]), 4);
     if (std::ranges::find(kNeeded, type) != kNeeded.end()) {
       if (crc(chunk.subspan(4, 4 + length)) != u32(chunk, kHead + length))
-        return fail(subject, "is damaged: its " + std::string(type) + " chunk has a wrong checksum",
-                    "save it again");
+        throw Error{subject, "is damaged: its " + std::string(type) + " chunk has a wrong checksum",
+                    "save it again"};
       out.insert(out.end(), chunk.begin(), chunk.end());
     }
     if (type == "IEND") return out;
     at += chunk.size();
   }
-  return truncated();
+  throw truncated;
 }
 
 constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
@@ -114,43 +155,55 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
-Result<DecodedImage> decode(const SceneImage& image, const std::string& subject) {
-  const auto reader = openImageIo();
-  if (!reader) return failAgain(reader.error());
+glm::vec4 data(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+  const std::uint8_t* p = bytesOf(image, sampler, x, y);
+  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+}
+
+// Interpolates what `read` returns of texels.
+template <typename Read>
+glm::vec4 sample(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv, const Read& read) {
+  // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
+  const glm::dvec2 size(image.width, image.height);
+  const glm::dvec2 at =
+      glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
+  const glm::dvec2 base = glm::floor(at);
+  const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
+  if (sampler.mag_filter == kNearest) return read(image, sampler, x, y);
+  const glm::vec2 f(at - base);
+  return glm::mix(glm::mix(read(image, sampler, x, y), read(image, sampler, x + 1, y), f.x),
+                  glm::mix(read(image, sampler, x, y + 1), read(image, sampler, x + 1, y + 1), f.x), f.y);
+}
+
+DecodedImage decode(const SceneImage& image, const std::string& subject) {
+  const OpenImageIo& reader = *orThrow(openImageIo());
   std::vector<std::byte> essential;
   std::span<const std::byte> bytes = image.file_bytes;
-  const bool is_png = image.mime_type == "image/png";
-  if (is_png) {
-    auto png = essentialPng(bytes, subject);
-    if (!png) return failAgain(png.error());
-    essential = std::move(*png);
-    bytes = essential;
-  }
+  if (image.mime_type == "image/png") bytes = essential = essentialPng(bytes, subject);
   const std::string kind = image.mime_type.substr(image.mime_type.find('/') + 1);
-  const auto stored = (*reader)->decode(bytes, "memory." + kind, subject);
-  if (!stored) return failAgain(stored.error());
+  const Pixels stored = orThrow(reader.decode(bytes, "memory." + kind, subject));
 
-  const std::size_t pixels = std::size_t{stored->width} * stored->height, channels = stored->channels;
-  DecodedImage out{.width = stored->width, .height = stored->height, .rgba = {}};
+  const std::size_t pixels = std::size_t{stored.width} * stored.height, channels = stored.channels;
+  DecodedImage out{.width = stored.width, .height = stored.height, .rgba = {}};
   out.rgba.resize(pixels * 4);
   const bool gray = channels < 3, alpha = channels == 2 || channels >= 4;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const std::uint8_t* p = &stored->values[i * channels];
+    const std::uint8_t* p = &stored.values[i * channels];
     for (std::size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = gray ? p[0] : p[c];
     out.rgba[i * 4 + 3] = alpha ? p[channels == 2 ? 1 : 3] : std::uint8_t{255};
   }
   return out;
 }
 
+glm::i64vec2 texelAt(const DecodedImage& image, glm::vec2 uv) {
+  return {glm::floor(glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f))};
+}
+
 }  // namespace
 
 Result<DecodedImage> decodeImage(const SceneImage& image) {
   const std::string subject = fmt::format("image \"{}\"", image.name);
-  try {
-    return decode(image, subject);
-  } catch (const std::exception& exception) {
-    return fail(subject, fmt::format("cannot be decoded ({})", reasonOf(exception)), kSaveAgain);
-  }
+  return resultOf(subject, "decoded", kSaveAgain, [&] { return decode(image, subject); });
 }
 
 Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_t texture) {
@@ -167,36 +220,21 @@ Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_
 }
 
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
-  const glm::dvec2 size(image.width, image.height);
-  const glm::dvec2 at =
-      glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
-  const glm::dvec2 base = glm::floor(at);
-  const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
-  if (sampler.mag_filter == kNearest) return texel(image, sampler, x, y);
-  const glm::vec2 f(at - base);
-  return glm::mix(glm::mix(texel(image, sampler, x, y), texel(image, sampler, x + 1, y), f.x),
-                  glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
+  return sample(image, sampler, uv, texel);
 }
 
-namespace {
-
-glm::vec2 texelPlace(const DecodedImage& image, glm::vec2 uv) {
-  return glm::floor(glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f));
+glm::vec4 sampleData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  return sample(image, sampler, uv, data);
 }
-
-}  // namespace
 
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  const glm::vec2 at = texelPlace(image, uv);
-  return texel(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
+  const glm::i64vec2 at = texelAt(image, uv);
+  return texel(image, sampler, at.x, at.y);
 }
 
 glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  const glm::vec2 at = texelPlace(image, uv);
-  const std::uint8_t* p =
-      bytesOf(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
-  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  const glm::i64vec2 at = texelAt(image, uv);
+  return data(image, sampler, at.x, at.y);
 }
 
 namespace {
@@ -222,45 +260,40 @@ std::string kindOf(std::span<const std::byte> bytes, const std::string& name) {
   return ending == ".tga" || ending == ".TGA" ? "tga" : "";
 }
 
-Result<SceneImage> pngOf(const DecodedImage& image, std::string name) {
-  const auto writer = openImageIo();
-  if (!writer) return failAgain(writer.error());
+SceneImage pngOf(const DecodedImage& image, std::string name) {
   bool opaque = true;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) opaque &= image.rgba[i] == 255;
   Pixels pixels{.width = image.width, .height = image.height, .channels = opaque ? 3u : 4u, .values = {}};
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
     if (!opaque || i % 4 != 3) pixels.values.push_back(image.rgba[i]);
-  const auto png = (*writer)->encodePng(pixels, name);
-  if (!png) return failAgain(png.error());
-  const auto bytes = std::as_bytes(std::span(*png));
-  return SceneImage{std::move(name), "image/png", {bytes.begin(), bytes.end()}};
+  const auto png = orThrow(orThrow(openImageIo())->encodePng(pixels, name));
+  const auto bytes = std::as_bytes(std::span(png));
+  return {std::move(name), "image/png", {bytes.begin(), bytes.end()}};
 }
 
 }  // namespace
 
-Result<SceneImage> storableImage(std::string name, std::vector<std::byte> bytes) {
+SceneImage storableImage(std::string name, std::vector<std::byte> bytes) {
   const std::string kind = kindOf(bytes, name);
   if (kind == "ktx")
-    return fail(name, "is a KTX texture, which is not decoded",
-                "convert the scene by: gltf-transform ktxdecompress IN.glb OUT.glb");
-  if (kind.empty()) return fail(name, "is neither PNG, JPEG nor WebP", kSaveAgain);
+    throw Error{name, "is a KTX texture, which is not decoded",
+                "convert the scene by: gltf-transform ktxdecompress IN.glb OUT.glb"};
+  if (kind.empty()) throw Error{name, "is neither PNG, JPEG nor WebP", kSaveAgain};
   SceneImage image{std::move(name), "image/" + kind, std::move(bytes)};
-  const auto decoded = decodeImage(image);
-  if (!decoded) return failAgain(decoded.error());
+  const DecodedImage decoded = orThrow(decodeImage(image));
   if (kind == "png" || kind == "jpeg") return image;
-  return pngOf(*decoded, std::move(image.name));
+  return pngOf(decoded, std::move(image.name));
 }
 
-Result<SceneImage> roughnessImage(const SceneImage& glossiness, float factor) {
-  auto image = decodeImage(glossiness);
-  if (!image) return failAgain(image.error());
-  for (std::size_t i = 0; i < image->rgba.size(); i += 4) {
-    const float gloss = factor * static_cast<float>(image->rgba[i + 3]);
-    image->rgba[i] = image->rgba[i + 2] = 0;
-    image->rgba[i + 1] = static_cast<std::uint8_t>(std::lround(255.0f - std::clamp(gloss, 0.0f, 255.0f)));
-    image->rgba[i + 3] = 255;
+SceneImage roughnessImage(const SceneImage& glossiness, float factor) {
+  DecodedImage image = orThrow(decodeImage(glossiness));
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const float gloss = factor * static_cast<float>(image.rgba[i + 3]);
+    image.rgba[i] = image.rgba[i + 2] = 0;
+    image.rgba[i + 1] = static_cast<std::uint8_t>(std::lround(255.0f - std::clamp(gloss, 0.0f, 255.0f)));
+    image.rgba[i + 3] = 255;
   }
-  return pngOf(*image, glossiness.name + " roughness");
+  return pngOf(image, glossiness.name + " roughness");
 }
 
 }  // namespace lambent::baker

@@ -26,13 +26,13 @@ Result<DecodedImage> decodeImage(const SceneImage& image);
 
 // Makes images that bundles can keep: PNG or JPEG, whatever the file brings.
 
-// Returns a PNG or JPEG as it is, and WebP, BMP, GIF, TIFF and TGA as PNG. Errors: the image is of
+// Returns a PNG or JPEG as it is, and WebP, BMP, GIF, TIFF and TGA as PNG. Throws an Error if the image is of
 // another kind, or cannot be decoded.
-Result<SceneImage> storableImage(std::string name, std::vector<std::byte> bytes);
+SceneImage storableImage(std::string name, std::vector<std::byte> bytes);
 
 // Returns the metallic-roughness texture of KHR_materials_pbrSpecularGlossiness, whose images have glossiness
-// in alpha: green is 1 - factor x glossiness, blue is 0.
-Result<SceneImage> roughnessImage(const SceneImage& glossiness, float factor);
+// in alpha: green is 1 - factor x glossiness, blue is 0. Throws an Error if it cannot be decoded.
+SceneImage roughnessImage(const SceneImage& glossiness, float factor);
 
 // Decodes the images of a scene when they are first asked for and keeps them. It must be used from one
 // thread.
@@ -50,11 +50,12 @@ class DecodedImages {
 
 // Returns a bilinear look-up at uv under the sampler's wrap modes: linear RGB and alpha, each 0..1.
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
+// Does the same for an image that holds no colours: all four channels are 0..1 as stored.
+glm::vec4 sampleData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
 // Returns the texel that contains uv, for sums over so many look-ups that blending between texels makes no
 // difference.
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
-// Does the same for an image that holds no colours: all four channels are 0..1 as stored.
 glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
 }  // namespace lambent::baker

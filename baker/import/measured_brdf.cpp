@@ -4,23 +4,19 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <glm/mat3x3.hpp>
 
 #include "baker/import/scene_files.hpp"
+#include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kMostWavelengths = 4096;
 constexpr const char* kTakeAgain = "take the file from its source again";
-
-struct BrokenMeasurements {
-  std::string problem;
-};
 
 // Reads the numbers of a text one after the other; `#` starts a comment that ends with its line.
 class Numbers {
@@ -30,13 +26,13 @@ class Numbers {
   bool ended() const { return at_ == text_.size(); }
   std::size_t line() const { return line_; }
   double next(const char* what) {
-    if (ended()) throw BrokenMeasurements{fmt::format("ends where {} should stand", what)};
+    if (ended()) refuse("ends where {} should stand", what);
     double value = 0.0;
     const char* const begin = text_.data() + at_;
     const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
     if (error != std::errc{} || !std::isfinite(value) ||
         (end != text_.data() + text_.size() && !isSpace(*end) && *end != '#'))
-      throw BrokenMeasurements{fmt::format("line {}: {} is not a finite number", line_, what)};
+      refuse("line {}: {} is not a finite number", line_, what);
     at_ += static_cast<std::size_t>(end - begin);
     skip();
     return value;
@@ -94,7 +90,7 @@ std::vector<glm::dvec3> colorWeights(const std::vector<double>& nm) {
   // All of the visible range gives 107 nm times white; about a hundredth of that is too little to tell a
   // colour.
   if (!(std::min({sum.r, sum.g, sum.b}) > 1.0))
-    throw BrokenMeasurements{"its wavelengths leave out a part of the visible range"};
+    refuse("its wavelengths leave out a part of the visible range");
   for (glm::dvec3& weight : weights) weight /= sum;
   return weights;
 }
@@ -102,13 +98,12 @@ std::vector<glm::dvec3> colorWeights(const std::vector<double>& nm) {
 std::vector<double> readWavelengths(Numbers& numbers) {
   const double count = numbers.next("the number of wavelengths");
   if (count < 1.0 || count > double{kMostWavelengths} || count != std::floor(count))
-    throw BrokenMeasurements{fmt::format("has {} wavelengths, not 1 to {}", count, kMostWavelengths)};
+    refuse("has {} wavelengths, not 1 to {}", count, kMostWavelengths);
   std::vector<double> nm;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const std::size_t line = numbers.line();
     nm.push_back(numbers.next("a wavelength"));
-    if (nm.back() <= 0.0 || (i > 0 && nm[i] <= nm[i - 1]))
-      throw BrokenMeasurements{fmt::format("line {}: wavelengths do not rise", line)};
+    if (nm.back() <= 0.0 || (i > 0 && nm[i] <= nm[i - 1])) refuse("line {}: wavelengths do not rise", line);
   }
   return nm;
 }
@@ -118,7 +113,7 @@ double polar(Numbers& numbers, const char* what) {
   const std::size_t line = numbers.line();
   const double angle = numbers.next(what);
   if (angle < 0.0 || angle > std::numbers::pi / 2 + kRoundings)
-    throw BrokenMeasurements{fmt::format("line {}: {} is {}, not from 0 to pi/2", line, what, angle)};
+    refuse("line {}: {} is {}, not from 0 to pi/2", line, what, angle);
   return std::min(angle, std::numbers::pi / 2);
 }
 
@@ -138,21 +133,18 @@ std::vector<BrdfMeasurement> readMeasurements(Numbers& numbers) {
     m.value = glm::vec3(glm::max(color, glm::dvec3(0.0)));
     measurements.push_back(m);
   }
-  if (measurements.empty()) throw BrokenMeasurements{"holds no measurement"};
+  if (measurements.empty()) refuse("holds no measurement");
   return measurements;
 }
 
 }  // namespace
 
 Result<MeasuredBrdf> readMeasuredBrdf(const std::filesystem::path& file) {
-  auto bytes = readBytes(file, file.string());
-  if (!bytes) return failAgain(std::move(bytes.error()));
-  try {
-    Numbers numbers(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+  return resultOf(file.string(), "read", kTakeAgain, [&] {
+    const std::string text = orThrow(readTextFile(file));
+    Numbers numbers(text);
     return MeasuredBrdf{file.filename().string(), readMeasurements(numbers)};
-  } catch (const BrokenMeasurements& broken) {
-    return fail(file.string(), broken.problem, kTakeAgain);
-  }
+  });
 }
 
 }  // namespace lambent::baker

@@ -23,10 +23,6 @@ namespace {
 
 using nlohmann::json;
 
-bool isFiniteNumber(const json& value) {
-  return value.is_number() && std::isfinite(value.get<float>());
-}
-
 // Returns whether it is worth a word that one number counts as another. Shares may exceed 1 by rounding.
 bool differs(double was, double now) {
   return std::abs(now - was) > 1e-4 * std::max(1.0, std::abs(now));
@@ -87,6 +83,15 @@ void mendTree(json& value, const std::string& place, std::vector<std::string>& w
 
 }  // namespace
 
+bool isFiniteNumber(const nlohmann::json& value) {
+  return value.is_number() && std::isfinite(value.get<float>());
+}
+
+nlohmann::json* Entry::find(const char* key) const {
+  const auto found = json.is_object() ? json.find(key) : json.end();
+  return found == json.end() ? nullptr : &*found;
+}
+
 void Entry::leaveOut(const char* key, const std::string& why) const {
   warn(fmt::format("{} {} and is left out", key, why));
   json.erase(key);
@@ -95,7 +100,7 @@ void Entry::leaveOut(const char* key, const std::string& why) const {
 std::optional<Entry> Entry::object(const char* key) const {
   nlohmann::json* member = find(key);
   if (member == nullptr) return std::nullopt;
-  if (member->is_object()) return Entry{*member, fmt::format("{}: {}", name, key), warnings};
+  if (member->is_object()) return Entry{*member, fmt::format("{}: {}", name, key), document};
   leaveOut(key, "is not an object");
   return std::nullopt;
 }
@@ -103,6 +108,11 @@ std::optional<Entry> Entry::object(const char* key) const {
 std::optional<Entry> Entry::extension(const char* key) const {
   const auto extensions = object("extensions");
   return extensions ? extensions->object(key) : std::nullopt;
+}
+
+std::optional<Entry> Entry::ours() const {
+  if (!memberOf(json, {"extras", "lambent"}).is_object()) return std::nullopt;
+  return Entry{json["extras"]["lambent"], name + ": extras: lambent", document};
 }
 
 void Entry::clamp(const char* key, double least, double most) const {
@@ -138,19 +148,16 @@ void Entry::keepWhole(const char* key, std::uint64_t most) const {
 
 void mendMembers(const Entry& root) {
   // Nothing reads the bounds of accessors, which are often wrong.
-  forEachEntry(root, "accessors", "accessor", [](const Entry& accessor) {
+  root.forEach("accessors", "accessor", [](const Entry& accessor) {
     accessor.json.erase("min");
     accessor.json.erase("max");
   });
-  if (root.json.is_object()) mendTree(root.json, "", root.warnings);
+  mendTree(root.json, "", root.document.warnings);
 }
 
-// Mends primitives, animations, and what nothing reads. Bytes are not read here: what is out of bounds is
-// refused by the checks.
+// Mends primitives and animations. Bytes are not read here: what is out of bounds is refused by the checks.
 
 namespace {
-
-using nlohmann::json;
 
 // Attributes that may be missing, with the types that they may have.
 struct Optional {
@@ -169,13 +176,10 @@ bool isRead(std::string_view semantic) {
 
 // Returns the accessor that a member names, if there is one.
 json* accessorOf(const Entry& root, const json& owner, const char* key) {
-  json* accessors = root.find("accessors");
-  const auto number = owner.find(key);
-  if (accessors == nullptr || !accessors->is_array() || number == owner.end() ||
-      !number->is_number_unsigned() || number->get<std::size_t>() >= accessors->size())
+  const json& number = memberOf(owner, {key});
+  if (!number.is_number_unsigned() || number.get<std::size_t>() >= root.list("accessors").size())
     return nullptr;
-  json& accessor = (*accessors)[number->get<std::size_t>()];
-  return accessor.is_object() ? &accessor : nullptr;
+  return &root.json["accessors"][number.get<std::size_t>()];
 }
 
 bool isEmpty(const json* accessor) {
@@ -223,117 +227,42 @@ void mendPrimitive(const Entry& root, const Entry& primitive) {
 }
 
 void mendChannels(const Entry& animation) {
-  json* channels = animation.find("channels");
-  if (channels == nullptr || !channels->is_array()) return;
+  if (animation.list("channels").empty()) return;
   std::size_t number = 0;
-  std::erase_if(channels->get_ref<json::array_t&>(), [&](const json& channel) {
-    const std::size_t c = number++;
-    const bool target = memberOf(channel, {"target"}).is_object(),
-               sampler = !memberOf(channel, {"sampler"}).is_null();
-    if (!target || !sampler)
-      animation.warn(fmt::format("channel {} has no {} and is left out", c, target ? "sampler" : "target"));
-    return !target || !sampler;
+  std::erase_if(animation.json["channels"].get_ref<json::array_t&>(), [&](const json& channel) {
+    const char* lacks = !memberOf(channel, {"target"}).is_object() ? "target"
+                        : memberOf(channel, {"sampler"}).is_null() ? "sampler"
+                                                                   : nullptr;
+    if (lacks) animation.warn(fmt::format("channel {} has no {} and is left out", number, lacks));
+    ++number;
+    return lacks != nullptr;
   });
-}
-
-// Collects the numbers under some keys of an object.
-void collect(const json& owner, std::initializer_list<const char*> keys, std::set<std::size_t>& used) {
-  if (!owner.is_object()) return;
-  for (const char* key : keys)
-    if (const auto value = owner.find(key); value != owner.end() && value->is_number_unsigned())
-      used.insert(value->get<std::size_t>());
-}
-void collectAll(const json& owner, std::set<std::size_t>& used) {
-  if (owner.is_object())
-    for (const json& value : owner)
-      if (value.is_number_unsigned()) used.insert(value.get<std::size_t>());
-}
-
-std::set<std::size_t> usedAccessors(const Entry& root) {
-  std::set<std::size_t> used;
-  for (const json& mesh : memberOf(root.json, {"meshes"}))
-    for (const json& primitive : memberOf(mesh, {"primitives"})) {
-      collect(primitive, {"indices"}, used);
-      collectAll(memberOf(primitive, {"attributes"}), used);
-      for (const json& target : memberOf(primitive, {"targets"})) collectAll(target, used);
-    }
-  for (const json& animation : memberOf(root.json, {"animations"}))
-    for (const json& sampler : memberOf(animation, {"samplers"})) collect(sampler, {"input", "output"}, used);
-  for (const json& skin : memberOf(root.json, {"skins"})) collect(skin, {"inverseBindMatrices"}, used);
-  for (const json& node : memberOf(root.json, {"nodes"}))
-    collectAll(memberOf(node, {"extensions", "EXT_mesh_gpu_instancing", "attributes"}), used);
-  return used;
-}
-
-std::set<std::size_t> usedViews(const Entry& root) {
-  std::set<std::size_t> used;
-  for (const json& accessor : memberOf(root.json, {"accessors"})) {
-    collect(accessor, {"bufferView"}, used);
-    for (const char* part : {"indices", "values"})
-      collect(memberOf(accessor, {"sparse", part}), {"bufferView"}, used);
-  }
-  for (const json& image : memberOf(root.json, {"images"})) collect(image, {"bufferView"}, used);
-  for (const json& mesh : memberOf(root.json, {"meshes"}))
-    for (const json& primitive : memberOf(mesh, {"primitives"}))
-      collect(memberOf(primitive, {"extensions", "KHR_draco_mesh_compression"}), {"bufferView"}, used);
-  return used;
-}
-
-// Puts `empty` in place of the objects of a list that nothing reads and that `check` refuses.
-template <typename Check>
-void emptyUnused(const Entry& root, const char* key, const char* what, const std::set<std::size_t>& used,
-                 const json& empty, Check check) {
-  json* list = root.find(key);
-  if (list == nullptr || !list->is_array()) return;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    if (used.contains(i)) continue;
-    const std::string name = fmt::format("{} {}", what, i);
-    try {
-      check(Object{(*list)[i], name});
-    } catch (const BrokenField& broken) {
-      root.warnings.push_back(broken.problem + ", but nothing reads it");
-      (*list)[i] = empty;
-    }
-  }
 }
 
 }  // namespace
 
 void mendPrimitives(const Entry& root) {
-  forEachEntry(root, "meshes", "mesh", [&](const Entry& mesh) {
-    forEachEntry(mesh, "primitives", (mesh.name + ", primitive").c_str(),
-                 [&](const Entry& primitive) { mendPrimitive(root, primitive); });
-  });
-  forEachEntry(root, "accessors", "accessor", [](const Entry& accessor) {
+  root.forEach("accessors", "accessor", [](const Entry& accessor) {
     if (memberOf(accessor.json, {"sparse", "count"}) == 0) accessor.leaveOut("sparse", "replaces nothing");
   });
-  forEachEntry(root, "bufferViews", "bufferView", [](const Entry& view) {
-    if (const json* stride = view.find("byteStride"); stride != nullptr && *stride == 0)
-      view.leaveOut("byteStride", "is 0");
+  root.forEach("bufferViews", "bufferView", [](const Entry& view) {
+    if (memberOf(view.json, {"byteStride"}) == 0) view.leaveOut("byteStride", "is 0");
+  });
+  root.forEach("meshes", "mesh", [&](const Entry& mesh) {
+    mesh.forEach("primitives", mesh.name + ", primitive",
+                 [&](const Entry& primitive) { mendPrimitive(root, primitive); });
   });
 }
 
 void mendAnimations(const Entry& root) {
-  forEachEntry(root, "animations", "animation", [](const Entry& animation) {
-    forEachEntry(animation, "samplers", (animation.name + ", sampler").c_str(), [](const Entry& sampler) {
+  root.forEach("animations", "animation", [](const Entry& animation) {
+    animation.forEach("samplers", animation.name + ", sampler", [](const Entry& sampler) {
       const json* word = sampler.find("interpolation");
       if (word != nullptr && *word != "LINEAR" && *word != "STEP" && *word != "CUBICSPLINE")
         sampler.leaveOut("interpolation", fmt::format("is {}", word->dump()));
     });
     mendChannels(animation);
   });
-}
-
-void mendUnused(const Entry& root) {
-  const Root checked{{root.json, "the document"}};
-  emptyUnused(root, "accessors", "accessor", usedAccessors(root),
-              {{"componentType", 5126u}, {"count", 0u}, {"type", "SCALAR"}},
-              [&](const Object& accessor) { checkAccessor(accessor, checked); });
-  emptyUnused(root, "bufferViews", "bufferView", usedViews(root), {{"buffer", 0u}, {"byteLength", 0u}},
-              [&](const Object& view) {
-                checkView(view, checked);
-                if (view.required("byteLength") == 0) throw BrokenField{view.name + " has no bytes"};
-              });
 }
 
 }  // namespace lambent::baker

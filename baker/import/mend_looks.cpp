@@ -23,7 +23,7 @@ using Allowed = gltf::MaterialJson::Allowed;
 void mendTextureInfo(const Entry& owner, const char* key) {
   const auto info = owner.object(key);
   if (!info) return;
-  if (info->find("index") == nullptr) return owner.leaveOut(key, "has no index");
+  if (!info->index("index", "textures")) return owner.leaveOut(key, "has no index");
   info->keepWhole("texCoord", 255);
   const auto transform = info->extension("KHR_texture_transform");
   if (!transform) return;
@@ -149,9 +149,9 @@ void mendImage(const Entry& image) {
 }  // namespace
 
 void mendMaterials(const Entry& root) {
-  forEachEntry(root, "images", "image", mendImage);
-  forEachEntry(root, "samplers", "sampler", mendSampler);
-  forEachEntry(root, "materials", "material", [](const Entry& material) {
+  root.forEach("images", "image", mendImage);
+  root.forEach("samplers", "sampler", mendSampler);
+  root.forEach("materials", "material", [](const Entry& material) {
     mendFields(material);
     if (const auto pbr = material.object("pbrMetallicRoughness")) mendColor(*pbr, "baseColorFactor");
     mendSpecularGlossiness(material);
@@ -159,14 +159,13 @@ void mendMaterials(const Entry& root) {
     mendAlphaMode(material);
     mendFlag(material, "doubleSided");
     material.json.erase("occlusionTexture");  // nothing reads it
+    if (const auto ours = material.ours()) ours->text("brdf");
   });
 }
 
 // Mends punctual lights and cameras.
 
 namespace {
-
-using nlohmann::json;
 
 // Returns a number, or `fallback` if there is none.
 double numberOf(const Entry& entry, const char* key, double fallback) {
@@ -212,31 +211,27 @@ void mendCamera(const Entry& camera) {
   const char* kind = perspective ? "perspective" : "orthographic";
   if (!camera.object(kind)) camera.json[kind] = json::object();
   const Entry lens = *camera.object(kind);
-  // Sets a number that is not what a lens can have.
-  const auto replace = [&](const char* key, double now, auto good) {
+  // Replaces a number that no lens has, or leaves it out if it may be missing.
+  const auto mend = [&](const char* key, std::optional<double> now, auto good) {
     const json* value = lens.find(key);
-    if (value != nullptr && value->is_number() && std::isfinite(value->get<float>()) &&
-        good(value->get<float>()))
-      return;
-    lens.warn(fmt::format("{} is {}, which counts as {:g}", key, value ? value->dump() : "missing", now));
-    lens.json[key] = now;
+    if (value == nullptr ? !now : isFiniteNumber(*value) && good(value->get<float>())) return;
+    if (!now) return lens.leaveOut(key, fmt::format("is {}", value->dump()));
+    lens.warn(fmt::format("{} is {}, which counts as {:g}", key, value ? value->dump() : "missing", *now));
+    lens.json[key] = *now;
   };
-  const auto drop = [&](const char* key, auto good) {
-    const json* value = lens.find(key);
-    if (value != nullptr && !(value->is_number() && good(value->get<double>())))
-      lens.leaveOut(key, fmt::format("is {}", value->dump()));
-  };
+  const auto positive = [](float v) { return v > 0.0f; };
+  const auto any = [](float v) { return v != 0.0f; };
   if (perspective) {
-    replace("yfov", 0.8, [](float v) { return v > 0.0f && v < std::numbers::pi_v<float>; });
-    replace("znear", 0.01, [](float v) { return v > 0.0f; });
-    drop("aspectRatio", [](double v) { return v > 0.0 && v < kAnyNumber; });
+    mend("yfov", 0.8, [](float v) { return v > 0.0f && v < std::numbers::pi_v<float>; });
+    mend("znear", 0.01, positive);
+    mend("aspectRatio", std::nullopt, positive);
   } else {
-    replace("xmag", 1.0, [](float v) { return v != 0.0f; });
-    replace("ymag", 1.0, [](float v) { return v != 0.0f; });
-    replace("znear", 0.0, [](float v) { return v >= 0.0f; });
+    mend("xmag", 1.0, any);
+    mend("ymag", 1.0, any);
+    mend("znear", 0.0, [](float v) { return v >= 0.0f; });
   }
-  const double near = numberOf(lens, "znear", 0.0);
-  drop("zfar", [&](double v) { return float(v) > float(near) && v < kAnyNumber; });
+  const auto near = static_cast<float>(numberOf(lens, "znear", 0.0));
+  mend("zfar", std::nullopt, [&](float v) { return v > near; });
 }
 
 }  // namespace
@@ -246,7 +241,7 @@ void mendLights(const Entry& root) {
   if (!extension) return;
   std::set<std::size_t> unknown;
   std::size_t number = 0;
-  forEachEntry(*extension, "lights", "light", [&](const Entry& light) {
+  extension->forEach("lights", "light", [&](const Entry& light) {
     const json* type = light.find("type");
     const bool known = type != nullptr && (*type == "directional" || *type == "point" || *type == "spot");
     if (!known) {
@@ -258,7 +253,7 @@ void mendLights(const Entry& root) {
     mendLight(light);
     ++number;
   });
-  forEachEntry(root, "nodes", "node", [&](const Entry& node) {
+  root.forEach("nodes", "node", [&](const Entry& node) {
     const auto use = node.extension("KHR_lights_punctual");
     const json* light = use ? use->find("light") : nullptr;
     if (use &&
@@ -268,7 +263,7 @@ void mendLights(const Entry& root) {
 }
 
 void mendCameras(const Entry& root) {
-  forEachEntry(root, "cameras", "camera", mendCamera);
+  root.forEach("cameras", "camera", mendCamera);
 }
 
 }  // namespace lambent::baker

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
@@ -15,8 +16,8 @@
 #include "baker/import/details.hpp"
 #include "baker/import/document.hpp"
 #include "baker/import/mesh_edits.hpp"
-#include "baker/import/scene_files.hpp"
 #include "baker/import/texture_transfer.hpp"
+#include "runtime/base/finite.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -37,30 +38,22 @@ bool turnsWithTangents(const gltf::Material& material) {
 }
 
 // Returns the joint matrices of a skin: world at rest from mesh as stored.
-Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
-                                              const std::vector<glm::dmat4>& world) {
+std::vector<glm::dmat4> jointMatrices(const Document& document, std::size_t number,
+                                      const std::vector<glm::dmat4>& world) {
   const nlohmann::json& skin = document.at("skins", number);
   const nlohmann::json& joints = skin["joints"];
   std::vector<glm::dmat4> matrices(joints.size(), glm::dmat4(1.0));
   if (skin.contains("inverseBindMatrices")) {
-    const auto floats =
+    const Floats floats =
         readFloats(document, skin["inverseBindMatrices"].get<std::size_t>(), "inverseBindMatrices", {"MAT4"});
-    if (!floats) return failAgain(floats.error());
-    if (floats->count() < joints.size())
-      return fail(document.file(),
-                  fmt::format("skin {}: {} inverse bind matrices for {} joints", number, floats->count(),
-                              joints.size()),
-                  kExportAgain);
+    if (floats.count() < joints.size())
+      refuse("skin {}: {} inverse bind matrices for {} joints", number, floats.count(), joints.size());
     for (std::size_t j = 0; j < joints.size(); ++j)
-      for (int i = 0; i < 16; ++i)
-        matrices[j][i / 4][i % 4] = double{floats->values[16 * j + static_cast<std::size_t>(i)]};
+      matrices[j] = glm::dmat4(glm::make_mat4(&floats.values[16 * j]));
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
     matrices[j] = world[joints[j].get<std::size_t>()] * matrices[j];
-    for (int i = 0; i < 16; ++i)
-      if (!std::isfinite(matrices[j][i / 4][i % 4]))
-        return fail(document.file(), fmt::format("skin {}: the matrix of joint {} is not finite", number, j),
-                    kExportAgain);
+    if (!isFinite(matrices[j])) refuse("skin {}: the matrix of joint {} is not finite", number, j);
   }
   return matrices;
 }
@@ -70,25 +63,21 @@ class MeshConverter {
   MeshConverter(const Document& document, NodeMap& map, Scene& scene)
       : document_(document), map_(map), scene_(scene), world_(fileWorldTransforms(document)) {}
 
-  Result<void> convert() {
+  void convert() {
     const std::size_t nodes = scene_.nodes.size();  // skins may add some
     for (std::size_t n = 0; n < nodes; ++n)
-      if (scene_.nodes[n].mesh >= 0)
-        if (auto done = convertNode(n); !done) return done;
-    return {};
+      if (scene_.nodes[n].mesh >= 0) convertNode(n);
   }
 
  private:
-  Result<void> convertNode(std::size_t n) {
+  void convertNode(std::size_t n) {
     const auto file_node = static_cast<std::size_t>(map_.file_node[n]);
     const nlohmann::json& source = document_.at("nodes", file_node);
     const auto file_mesh = source.at("mesh").get<std::size_t>();
     MeshPose pose{weightsOf(source, document_.at("meshes", file_mesh)), {}};
     const bool skinned = source.contains("skin");
     if (skinned) {
-      auto joints = jointMatrices(document_, source["skin"].get<std::size_t>(), world_);
-      if (!joints) return failAgain(std::move(joints.error()));
-      pose.joints = std::move(*joints);
+      pose.joints = jointMatrices(document_, source["skin"].get<std::size_t>(), world_);
       scene_.warnings.push_back(
           fmt::format("node {}: its skin stands as the file's joints do and does not move", file_node));
       n = placeSkinned(n, pose);
@@ -97,15 +86,13 @@ class MeshConverter {
     const auto [entry, added] = number_.try_emplace(
         {file_mesh, pose.weights, skinned ? static_cast<std::int64_t>(n) : -1}, std::int32_t{-1});
     if (added) {
-      auto mesh = readMesh(file_mesh, pose);
-      if (!mesh) return failAgain(std::move(mesh.error()));
-      if (!mesh->primitives.empty()) {
+      SceneMesh mesh = readMesh(file_mesh, pose);
+      if (!mesh.primitives.empty()) {
         entry->second = static_cast<std::int32_t>(scene_.meshes.size());
-        scene_.meshes.push_back(std::move(*mesh));
+        scene_.meshes.push_back(std::move(mesh));
       }
     }
     scene_.nodes[n].mesh = entry->second;
-    return {};
   }
 
   // glTF places a skinned mesh by its joints alone. Here it stays at its node, converted to the node's space,
@@ -137,7 +124,7 @@ class MeshConverter {
     return static_cast<std::size_t>(added);
   }
 
-  Result<SceneMesh> readMesh(std::size_t m, const MeshPose& pose) {
+  SceneMesh readMesh(std::size_t m, const MeshPose& pose) {
     const nlohmann::json& source = document_.at("meshes", m);
     const nlohmann::json& primitives = memberOf(source, {"primitives"});
     SceneMesh mesh{.name = source.value("name", ""), .primitives = {}};
@@ -147,22 +134,21 @@ class MeshConverter {
       const std::int32_t material = primitive.value("material", -1);
       const bool tangents =
           material >= 0 && turnsWithTangents(scene_.materials[static_cast<std::size_t>(material)]);
-      auto data = readPrimitive(document_, primitive, pose, tangents, name, scene_.warnings);
-      if (!data) return failAgain(std::move(data.error()));
-      if (data->indices.empty()) continue;
+      bundle::MeshData data = readPrimitive(document_, primitive, pose, tangents, name, scene_.warnings);
+      if (data.indices.empty()) continue;
       if (!memberOf(primitive, {"targets"}).empty())
         scene_.warnings.push_back(
             fmt::format("{}: its morph targets stand as the file's weights say and do not move", name));
-      cleanMesh(*data, name, scene_.warnings);
-      if (tangents && data->tangents.empty() && !data->indices.empty())
-        makeTangents(*data, scene_.materials[static_cast<std::size_t>(material)].normal_texture);
-      vertices_ += data->positions.size();
+      cleanMesh(data, name, scene_.warnings);
+      if (tangents && data.tangents.empty() && !data.indices.empty())
+        makeTangents(data, scene_.materials[static_cast<std::size_t>(material)].normal_texture);
+      vertices_ += data.positions.size();
       if (vertices_ > kMaxVertices)
-        return fail(document_.file(),
+        throw Error{{},
                     fmt::format("{} brings the scene to more than {} vertices", name, kMaxVertices),
-                    "import it in parts");
-      if (data->indices.empty()) continue;
-      mesh.primitives.push_back({.mesh = std::move(*data), .material = material});
+                    "import it in parts"};
+      if (data.indices.empty()) continue;
+      mesh.primitives.push_back({.mesh = std::move(data), .material = material});
       if (const std::uint32_t texels = textureTransferOf(source, primitive); texels > 0)
         giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
@@ -181,8 +167,8 @@ class MeshConverter {
 
 }  // namespace
 
-Result<void> convertMeshes(const Document& document, NodeMap& map, Scene& scene) {
-  return MeshConverter(document, map, scene).convert();
+void convertMeshes(const Document& document, NodeMap& map, Scene& scene) {
+  MeshConverter(document, map, scene).convert();
 }
 
 }  // namespace lambent::baker

@@ -2,11 +2,14 @@
 // Such distances are in the translations of any nodes, which may cancel each other out, or in the vertices.
 // Here they go into Scene::origin. What remains is as small as the scene, at every node on the way to a
 // surface, so that later stages may compute in floats.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
@@ -18,6 +21,10 @@ namespace lambent::baker {
 namespace {
 
 using Path = gltf::AnimationChannel::Path;
+
+// Areas are products of two lengths and their squares of four, which must neither underflow nor overflow.
+// Both limits leave a factor of ten to where tracing was seen to fail.
+constexpr double kLeastSide_m = 1e-8, kMostDistance_m = 1e8;
 
 // Distances up to this many sides of the scene stay: floats there are 2^-20 of its side apart.
 constexpr double kFar = 8.0;
@@ -35,9 +42,12 @@ class NearOrigin {
       : map_(std::move(map)),
         scene_(scene),
         world_(sceneWorldTransforms(map_, scene)),
-        shifts_(scene.nodes.size(), glm::dvec3(0.0)) {}
+        shifts_(scene.nodes.size(), glm::dvec3(0.0)) {
+    for (const SceneMesh& mesh : scene.meshes) boxes_.push_back(boxOf(mesh));
+  }
 
   void run() {
+    checkSizes();
     const PlacedBox all = sceneBox();
     if (all.empty() || !(all.side() > 0.0)) return;
     reach_ = kFar * all.side();
@@ -55,14 +65,35 @@ class NearOrigin {
   gltf::Node& node(std::int32_t n) { return scene_.nodes[static_cast<std::size_t>(n)]; }
   glm::dmat4& local(std::int32_t n) { return map_.parent_from_node[static_cast<std::size_t>(n)]; }
 
+  void checkSizes() const {
+    // The farthest place of each node and those above it: if two cancel each other out, digits are lost.
+    std::vector<double> farthest(world_.size());
+    for (std::size_t n = 0; n < scene_.nodes.size(); ++n) {
+      farthest[n] = largest(glm::dvec3(world_[n][3]));
+      if (const std::int32_t parent = scene_.nodes[n].parent; parent >= 0)
+        farthest[n] = std::max(farthest[n], farthest[static_cast<std::size_t>(parent)]);
+      if (scene_.nodes[n].mesh < 0) continue;
+      PlacedBox there;
+      there.add(boxes_[static_cast<std::size_t>(scene_.nodes[n].mesh)], world_[n]);
+      const double distance = std::max({largest(there.low), largest(there.high), farthest[n]});
+      const std::string name = fmt::format("node {} (\"{}\")", n, scene_.nodes[n].name);
+      if (!(distance <= kMostDistance_m))  // or not a number
+        throw Error{
+            {},
+            fmt::format("{} reaches {:.3g} m from the origin, where floats cannot be traced", name, distance),
+            fmt::format("scale or move it to within {:g} m", kMostDistance_m)};
+      if (there.side() > 0.0 && there.side() < kLeastSide_m)
+        throw Error{{},
+                    fmt::format("{} is only {:.3g} m large, which floats cannot trace", name, there.side()),
+                    fmt::format("scale it to {:g} m or more, or to 0 to hide it", kLeastSide_m)};
+    }
+  }
+
   PlacedBox sceneBox() const {
     PlacedBox all;
-    std::vector<PlacedBox> boxes;
-    for (const SceneMesh& mesh : scene_.meshes) boxes.push_back(boxOf(mesh));
     for (std::size_t n = 0; n < scene_.nodes.size(); ++n)
-      if (const std::int32_t mesh = scene_.nodes[n].mesh;
-          mesh >= 0 && !boxes[static_cast<std::size_t>(mesh)].empty())
-        all.add(boxes[static_cast<std::size_t>(mesh)], world_[n]);
+      if (scene_.nodes[n].mesh >= 0)
+        all.add(boxes_[static_cast<std::size_t>(scene_.nodes[n].mesh)], world_[n]);
     for (const SceneVolume& volume : scene_.volumes)
       all.add({glm::dvec3(0.0), glm::dvec3(volume.size)},
               world_[volume.node] * glm::dmat4(volume.node_from_grid));
@@ -90,7 +121,7 @@ class NearOrigin {
   void centerMeshes() {
     std::vector<bool> far(scene_.meshes.size(), false);
     std::vector<glm::dvec3> center(scene_.meshes.size());
-    for (std::size_t m = 0; m < center.size(); ++m) center[m] = roundedCenter(boxOf(scene_.meshes[m]));
+    for (std::size_t m = 0; m < center.size(); ++m) center[m] = roundedCenter(boxes_[m]);
     const auto nodes = static_cast<std::int32_t>(scene_.nodes.size());
     for (std::int32_t n = 0; n < nodes; ++n)
       if (const std::int32_t m = node(n).mesh;
@@ -202,6 +233,7 @@ class NearOrigin {
   NodeMap map_;
   Scene& scene_;
   std::vector<glm::dmat4> world_;
+  std::vector<PlacedBox> boxes_;    // by mesh, in its own space
   std::vector<glm::dvec3> shifts_;  // by node: what was subtracted from its place
   double reach_ = 0.0;
 };

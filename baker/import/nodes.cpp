@@ -10,7 +10,7 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/scene_files.hpp"
+#include "runtime/base/finite.hpp"
 
 namespace lambent::baker {
 
@@ -47,33 +47,33 @@ gltf::Camera convertCamera(const json& camera) {
   out.name = camera.value("name", "");
   out.perspective = camera.at("type") == "perspective";
   const json& lens = camera.at(out.perspective ? "perspective" : "orthographic");
-  if (out.perspective) {
-    out.yfov_rad = lens.at("yfov").get<float>();
-    out.aspect = lens.value("aspectRatio", 0.0f);
-  } else {
-    out.xmag = lens.at("xmag").get<float>();
-    out.ymag = lens.at("ymag").get<float>();
-  }
-  out.znear = lens.at("znear").get<float>();
-  out.zfar = lens.value("zfar", 0.0f);
+  readMember(lens, "yfov", out.yfov_rad);
+  readMember(lens, "aspectRatio", out.aspect);
+  readMember(lens, "xmag", out.xmag);
+  readMember(lens, "ymag", out.ymag);
+  readMember(lens, "znear", out.znear);
+  readMember(lens, "zfar", out.zfar);
   return out;
 }
 
 }  // namespace
 
+NodeParts partsOf(const json& node) {
+  NodeParts parts;
+  readMember(node, "translation", parts.translation);
+  readMember(node, "scale", parts.scale);
+  glm::dvec4 r(0.0, 0.0, 0.0, 1.0);
+  readMember(node, "rotation", r);
+  // A quaternion of length zero rotates nothing.
+  if (glm::length(r) > 0.0) parts.rotation = glm::normalize(glm::dquat(r.w, r.x, r.y, r.z));
+  return parts;
+}
+
 glm::dmat4 localMatrix(const json& node) {
-  const auto numbers = [&](const char* key) { return node.value(key, std::vector<double>()); };
-  if (const auto m = numbers("matrix"); !m.empty()) return glm::make_mat4(m.data());
-  glm::dmat4 matrix(1.0);
-  if (const auto t = numbers("translation"); !t.empty())
-    matrix = glm::translate(matrix, glm::make_vec3(t.data()));
-  if (const auto r = numbers("rotation"); !r.empty()) {
-    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-    // A quaternion of length zero rotates nothing.
-    if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
-  }
-  if (const auto s = numbers("scale"); !s.empty()) matrix = glm::scale(matrix, glm::make_vec3(s.data()));
-  return matrix;
+  if (node.contains("matrix")) return glm::make_mat4(node["matrix"].get<std::vector<double>>().data());
+  const NodeParts parts = partsOf(node);
+  return glm::scale(glm::translate(glm::dmat4(1.0), parts.translation) * glm::mat4_cast(parts.rotation),
+                    parts.scale);
 }
 
 std::vector<glm::dmat4> fileWorldTransforms(const Document& document) {
@@ -81,10 +81,13 @@ std::vector<glm::dmat4> fileWorldTransforms(const Document& document) {
   std::vector<glm::dmat4> world;
   for (const json& node : nodes) world.push_back(localMatrix(node));
   std::vector<std::size_t> open = parentless(document);  // nodes whose matrices are those of the world
+  std::vector<bool> placed(nodes.size(), false);         // a node outside the scene may have two parents
   while (!open.empty()) {
     const std::size_t parent = open.back();
     open.pop_back();
     for (const std::size_t child : childrenOf(nodes[parent])) {
+      if (placed[child]) continue;
+      placed[child] = true;
       world[child] = world[parent] * world[child];
       open.push_back(child);
     }
@@ -100,7 +103,7 @@ std::vector<glm::dmat4> sceneWorldTransforms(const NodeMap& map, const Scene& sc
   return world;
 }
 
-Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
+NodeMap convertNodes(const Document& document, Scene& scene) {
   for (const json& camera : document.list("cameras")) scene.cameras.push_back(convertCamera(camera));
 
   // Parents come first, in the order of the file; nodes of other scenes are left out.
@@ -113,8 +116,9 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
     const auto [index, parent] = pending.back();
     pending.pop_back();
     if (map.scene_node[index] >= 0)
-      return fail(document.file(), fmt::format("node {} stands twice in the scene", index),
-                  "list each root node once");
+      throw Error{{},
+                  fmt::format("node {} stands twice in the scene, or is its own ancestor", index),
+                  "give each node one parent, and list each root once"};
 
     const json& source = document.at("nodes", index);
     gltf::Node node;
@@ -122,11 +126,9 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
     node.parent = parent;
     map.parent_from_node.push_back(localMatrix(source));
     node.parent_from_node = glm::mat4(map.parent_from_node.back());
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r)
-        if (!std::isfinite(node.parent_from_node[c][r]))
-          return fail(document.file(), fmt::format("node {} has a transform that is not finite", index),
-                      "reset its transform");
+    if (!isFinite(node.parent_from_node))
+      throw Error{
+          {}, fmt::format("node {} has a transform that is not finite", index), "reset its transform"};
     node.mesh = source.value("mesh", -1);
     node.camera = source.value("camera", -1);
     if (const json& light = memberOf(source, {"extensions", "KHR_lights_punctual", "light"});
@@ -137,11 +139,8 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
     const auto added = static_cast<std::int32_t>(scene.nodes.size());
     map.scene_node[index] = added;
     map.file_node.push_back(static_cast<std::int32_t>(index));
-    if (parent < 0) {
-      scene.roots.push_back(added);
-    } else {
-      scene.nodes[static_cast<std::size_t>(parent)].children.push_back(added);
-    }
+    auto& siblings = parent < 0 ? scene.roots : scene.nodes[static_cast<std::size_t>(parent)].children;
+    siblings.push_back(added);
     scene.nodes.push_back(std::move(node));
     const std::vector<std::size_t> children = childrenOf(source);
     for (auto child = children.rbegin(); child != children.rend(); ++child)
@@ -159,76 +158,56 @@ constexpr std::size_t kMaxInstances = 1u << 20;  // each costs a name, draws and
 
 struct Attribute {
   const char *name, *type;
-  Floats values;
+  Floats values = {};
+
+  const float* at(std::size_t instance) const { return &values.values[instance * values.components]; }
 };
-
-Result<void> readAttribute(const Document& document, const json& attributes, const std::string& node,
-                           Attribute& attribute) {
-  if (!attributes.contains(attribute.name)) return {};
-  const std::string name = fmt::format("{} of the instances of {}", attribute.name, node);
-  auto floats = readFloats(document, attributes[attribute.name].get<std::size_t>(), name, {attribute.type});
-  if (!floats) return failAgain(std::move(floats.error()));
-  for (std::size_t i = 0; i < floats->values.size(); ++i)
-    if (!std::isfinite(floats->values[i]))
-      return fail(
-          document.file(),
-          fmt::format("{}: {} of instance {} is not finite", node, attribute.name, i / floats->components),
-          kExportAgain);
-  attribute.values = std::move(*floats);
-  return {};
-}
-
-const float* at(const Attribute& attribute, std::size_t instance) {
-  return &attribute.values.values[instance * attribute.values.components];
-}
 
 glm::mat4 instanceMatrix(const Attribute& translation, const Attribute& rotation, const Attribute& scale,
                          std::size_t i) {
   gltf::Trs trs;
-  if (translation.values.count() > 0) {
-    const float* t = at(translation, i);
-    trs.translation = {t[0], t[1], t[2]};
-  }
+  if (translation.values.count() > 0) trs.translation = glm::make_vec3(translation.at(i));
   if (rotation.values.count() > 0) {
-    const float* r = at(rotation, i);
+    const float* r = rotation.at(i);
     const glm::quat turn(r[3], r[0], r[1], r[2]);
     // Quantized quaternions are not exactly unit; one of length zero rotates nothing.
     if (glm::length(turn) > 0.0f) trs.rotation = glm::normalize(turn);
   }
-  if (scale.values.count() > 0) {
-    const float* s = at(scale, i);
-    trs.scale = {s[0], s[1], s[2]};
-  }
+  if (scale.values.count() > 0) trs.scale = glm::make_vec3(scale.at(i));
   return trs.matrix();
 }
 
-Result<void> expand(const Document& document, const json& attributes, std::size_t file_node,
-                    std::int32_t scene_node, std::size_t& total, NodeMap& map, Scene& scene) {
+void expand(const Document& document, const json& attributes, std::size_t file_node, std::int32_t scene_node,
+            std::size_t& total, NodeMap& map, Scene& scene) {
   const std::string name = fmt::format("node {}", file_node);
-  Attribute translation{"TRANSLATION", "VEC3", {}}, rotation{"ROTATION", "VEC4", {}},
-      scale{"SCALE", "VEC3", {}};
+  Attribute translation{"TRANSLATION", "VEC3"}, rotation{"ROTATION", "VEC4"}, scale{"SCALE", "VEC3"};
   std::size_t count = 0;
+  bool any = false;
   for (Attribute* attribute : {&translation, &rotation, &scale}) {
-    if (auto read = readAttribute(document, attributes, name, *attribute); !read) return read;
-    const std::size_t here = attribute->values.count();
+    if (!attributes.contains(attribute->name)) continue;
+    any = true;
+    attribute->values =
+        readFloats(document, attributes[attribute->name].get<std::size_t>(),
+                   fmt::format("{} of the instances of {}", attribute->name, name), {attribute->type});
+    const Floats& floats = attribute->values;
+    for (std::size_t i = 0; i < floats.values.size(); ++i)
+      if (!std::isfinite(floats.values[i]))
+        refuse("{}: {} of instance {} is not finite", name, attribute->name, i / floats.components);
+    const std::size_t here = floats.count();
     if (here != 0 && count != 0 && here != count)
-      return fail(document.file(),
-                  fmt::format("{}: {} is there for {} instances where others are for {}", name,
-                              attribute->name, here, count),
-                  kExportAgain);
+      refuse("{}: {} is there for {} instances where others are for {}", name, attribute->name, here, count);
     if (here != 0) count = here;
   }
   if (count == 0) {
     // It has no instance, unless it has only custom attributes: then it is drawn once.
-    for (const Attribute* attribute : {&translation, &rotation, &scale})
-      if (attributes.contains(attribute->name)) scene.nodes[static_cast<std::size_t>(scene_node)].mesh = -1;
-    return {};
+    if (any) scene.nodes[static_cast<std::size_t>(scene_node)].mesh = -1;
+    return;
   }
   total += count;
   if (total > kMaxInstances)
-    return fail(document.file(),
+    throw Error{{},
                 fmt::format("{} brings the scene to more than {} instances", name, kMaxInstances),
-                "import it in parts");
+                "import it in parts"};
   const gltf::Node source = scene.nodes[static_cast<std::size_t>(scene_node)];
   for (std::size_t i = 0; i < count; ++i) {
     gltf::Node node;
@@ -242,23 +221,19 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
     scene.nodes.push_back(std::move(node));
   }
   scene.nodes[static_cast<std::size_t>(scene_node)].mesh = -1;
-  return {};
 }
 
 }  // namespace
 
-Result<void> convertInstances(const Document& document, NodeMap& map, Scene& scene) {
-  constexpr const char* kExtension = "EXT_mesh_gpu_instancing";
+void convertInstances(const Document& document, NodeMap& map, Scene& scene) {
   std::size_t total = 0;
   for (std::size_t n = 0; n < map.scene_node.size(); ++n) {
-    const json& instances = memberOf(document.at("nodes", n), {"extensions", kExtension});
-    if (map.scene_node[n] < 0 || instances.is_null()) continue;
-    const auto scene_node = map.scene_node[n];
-    if (scene.nodes[static_cast<std::size_t>(scene_node)].mesh < 0) continue;
-    if (auto done = expand(document, instances.at("attributes"), n, scene_node, total, map, scene); !done)
-      return done;
+    const json& instances = memberOf(document.at("nodes", n), {"extensions", "EXT_mesh_gpu_instancing"});
+    const std::int32_t scene_node = map.scene_node[n];
+    if (scene_node < 0 || instances.is_null() || scene.nodes[static_cast<std::size_t>(scene_node)].mesh < 0)
+      continue;
+    expand(document, instances.at("attributes"), n, scene_node, total, map, scene);
   }
-  return {};
 }
 
 // Converts KHR_lights_punctual. mend_looks.cpp has seen to types and ranges.
@@ -272,8 +247,7 @@ gltf::Light convertLight(const json& source) {
   light.type = type == "directional" ? gltf::Light::Type::Directional
                : type == "spot"      ? gltf::Light::Type::Spot
                                      : gltf::Light::Type::Point;
-  if (source.contains("color"))
-    for (int c = 0; c < 3; ++c) light.color[c] = source["color"][static_cast<std::size_t>(c)].get<float>();
+  readMember(source, "color", light.color);
   light.intensity = source.value("intensity", 1.0f);
   // glTF's colours end at 1, so brighter ones are taken as intensity.
   const float largest = std::max({light.color.x, light.color.y, light.color.z});

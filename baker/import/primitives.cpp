@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -14,7 +15,6 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/scene_files.hpp"
 #include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {
@@ -31,47 +31,37 @@ struct Influences {
 };
 
 template <typename Vector>
-Result<void> addDisplacements(const Document& document, std::size_t accessor, float weight,
-                              const char* semantic, const std::string& name, std::vector<Vector>& values) {
-  if (values.empty()) return {};
-  const auto floats = readFloats(document, accessor, name + ": " + semantic, {"VEC3"});
-  if (!floats) return failAgain(floats.error());
-  if (floats->count() != values.size())
-    return fail(
-        document.file(),
-        fmt::format("{}: {} has {} elements, the mesh {}", name, semantic, floats->count(), values.size()),
-        kExportAgain);
+void addDisplacements(const Document& document, std::size_t accessor, float weight, const std::string& name,
+                      std::vector<Vector>& values) {
+  if (values.empty()) return;
+  const Floats floats = readFloats(document, accessor, name, {"VEC3"});
+  if (floats.count() != values.size())
+    refuse("{} has {} elements, the mesh {}", name, floats.count(), values.size());
   for (std::size_t v = 0; v < values.size(); ++v)
-    for (int c = 0; c < 3; ++c) values[v][c] += weight * floats->values[3 * v + static_cast<std::size_t>(c)];
-  return {};
+    for (int c = 0; c < 3; ++c) values[v][c] += weight * floats.values[3 * v + static_cast<std::size_t>(c)];
 }
 
 // Adds weight times displacement of every target to positions, normals and tangents.
-Result<void> applyMorphTargets(const Document& document, const json& targets,
-                               const std::vector<float>& weights, const std::string& name,
-                               bundle::MeshData& mesh) {
+void applyMorphTargets(const Document& document, const json& targets, const std::vector<float>& weights,
+                       const std::string& name, bundle::MeshData& mesh) {
   for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
     if (weights[t] == 0.0f) continue;
-    const std::string target = fmt::format("{}, morph target {}", name, t);
     for (const auto& [semantic, value] : targets[t].items()) {
-      const auto accessor = value.template get<std::size_t>();
-      Result<void> done;
-      if (semantic == "POSITION")
-        done = addDisplacements(document, accessor, weights[t], "POSITION", target, mesh.positions);
-      else if (semantic == "NORMAL")
-        done = addDisplacements(document, accessor, weights[t], "NORMAL", target, mesh.normals);
-      else if (semantic == "TANGENT")
-        done = addDisplacements(document, accessor, weights[t], "TANGENT", target, mesh.tangents);
-      if (!done) return done;
+      const auto add = [&, &accessor = value, &what = semantic](auto& values) {
+        addDisplacements(document, accessor.template get<std::size_t>(), weights[t],
+                         fmt::format("{}, morph target {}: {}", name, t, what), values);
+      };
+      if (semantic == "POSITION") add(mesh.positions);
+      if (semantic == "NORMAL") add(mesh.normals);
+      if (semantic == "TANGENT") add(mesh.tangents);
     }
   }
-  return {};
 }
 
 // Moves every vertex by the weighted mean of its joints' matrices. Errors: the skin does not have such a
 // joint.
-Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<glm::dmat4>& joints,
-                       const std::string& file, const std::string& name, bundle::MeshData& mesh) {
+void applySkin(const std::vector<Influences>& sets, const std::vector<glm::dmat4>& joints,
+               const std::string& name, bundle::MeshData& mesh) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     glm::dmat4 matrix(0.0);
     double sum = 0.0;
@@ -79,13 +69,10 @@ Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<gl
       for (int c = 0; c < 4; ++c) {
         const float weight = set.weights[v][c], joint = set.joints[v][c];
         if (!std::isfinite(weight) || weight < 0.0f)
-          return fail(file, fmt::format("{}: vertex {} has a joint weight of {}", name, v, weight),
-                      kExportAgain);
+          refuse("{}: vertex {} has a joint weight of {}", name, v, weight);
         if (weight == 0.0f) continue;
         if (!(joint >= 0.0f && joint < static_cast<float>(joints.size())))
-          return fail(file,
-                      fmt::format("{}: vertex {} hangs on joint {} of {}", name, v, joint, joints.size()),
-                      kExportAgain);
+          refuse("{}: vertex {} hangs on joint {} of {}", name, v, joint, joints.size());
         matrix += static_cast<double>(weight) * joints[static_cast<std::size_t>(joint)];
         sum += static_cast<double>(weight);
       }
@@ -102,55 +89,33 @@ Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<gl
     if (!mesh.tangents.empty())
       mesh.tangents[v] = glm::vec4(glm::vec3(linear * glm::dvec3(mesh.tangents[v])), mesh.tangents[v].w);
   }
-  return {};
 }
 
 template <typename Vector>
-Result<std::vector<Vector>> readVectors(const Document& document, const json& primitive,
-                                        const std::string& semantic,
-                                        std::initializer_list<std::string_view> types) {
+std::vector<Vector> readVectors(const Document& document, const json& primitive, const std::string& semantic,
+                                std::initializer_list<std::string_view> types) {
   const json& attribute = memberOf(primitive, {"attributes", semantic.c_str()});
-  if (attribute.is_null()) return std::vector<Vector>();
-  auto floats = readFloats(document, attribute.get<std::size_t>(), semantic, types,
-                           static_cast<std::size_t>(Vector::length()));
-  if (!floats) return failAgain(std::move(floats.error()));
-  std::vector<Vector> vectors(floats->count());
+  if (attribute.is_null()) return {};
+  const Floats floats = readFloats(document, attribute.get<std::size_t>(), semantic, types,
+                                   static_cast<std::size_t>(Vector::length()));
+  std::vector<Vector> vectors(floats.count());
   for (std::size_t i = 0; i < vectors.size(); ++i)
     for (int c = 0; c < Vector::length(); ++c)
-      vectors[i][c] = floats->values[i * floats->components + static_cast<std::size_t>(c)];
+      vectors[i][c] = floats.values[i * floats.components + static_cast<std::size_t>(c)];
   return vectors;
 }
 
-// Moves a result's value into `target`; returns false, and keeps the error, if there is none.
-template <typename T>
-bool moveResult(T& target, Result<T> result, Error& error) {
-  if (!result) {
-    error = std::move(result.error());
-    return false;
-  }
-  target = std::move(*result);
-  return true;
-}
-
-Result<bundle::MeshData> readPlain(const Document& document, const json& primitive, bool tangents) {
-  const bool indexed = primitive.contains("indices");
+bundle::MeshData readPlain(const Document& document, const json& primitive, bool tangents) {
   bundle::MeshData mesh;
-  Error error;
-  const bool read =
-      moveResult(mesh.positions, readVectors<glm::vec3>(document, primitive, "POSITION", {"VEC3"}), error) &&
-      moveResult(mesh.normals, readVectors<glm::vec3>(document, primitive, "NORMAL", {"VEC3"}), error) &&
-      moveResult(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {"VEC2"}),
-                 error) &&
-      moveResult(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {"VEC2"}),
-                 error) &&
-      moveResult(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {"VEC3", "VEC4"}),
-                 error) &&
-      (!tangents ||
-       moveResult(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {"VEC4"}), error)) &&
-      (!indexed ||
-       moveResult(mesh.indices, readIndices(document, primitive["indices"].get<std::size_t>()), error));
-  if (!read) return failAgain(std::move(error));
-  if (!indexed) {
+  mesh.positions = readVectors<glm::vec3>(document, primitive, "POSITION", {"VEC3"});
+  mesh.normals = readVectors<glm::vec3>(document, primitive, "NORMAL", {"VEC3"});
+  mesh.texcoords0 = readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {"VEC2"});
+  mesh.texcoords1 = readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {"VEC2"});
+  mesh.colors = readVectors<glm::vec4>(document, primitive, "COLOR_0", {"VEC3", "VEC4"});
+  if (tangents) mesh.tangents = readVectors<glm::vec4>(document, primitive, "TANGENT", {"VEC4"});
+  if (primitive.contains("indices")) {
+    mesh.indices = readIndices(document, primitive["indices"].get<std::size_t>());
+  } else {
     mesh.indices.resize(mesh.positions.size());
     std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
   }
@@ -166,8 +131,8 @@ struct DracoSource {
   std::int32_t id(const std::string& semantic) const { return ids->value(semantic, -1); }
 };
 
-Result<DracoSource> dracoSource(const Document& document, const json& primitive, bool tangents,
-                                const std::string& name) {
+DracoSource dracoSource(const Document& document, const json& primitive, bool tangents,
+                        const std::string& name) {
   const json& extension = primitive.at("extensions").at(kDraco);
   DracoSource source;
   source.ids = &extension.at("attributes");
@@ -176,11 +141,9 @@ Result<DracoSource> dracoSource(const Document& document, const json& primitive,
                                  .texcoord0 = source.id("TEXCOORD_0"),
                                  .texcoord1 = source.id("TEXCOORD_1"),
                                  .color0 = source.id("COLOR_0"),
-                                 .tangent = tangents ? source.id("TANGENT") : -1,
-                                 .normal_weight = source.id("_NORMAL_WEIGHT")};  // in bundles only
+                                 .tangent = tangents ? source.id("TANGENT") : -1};
   if (source.announced.attributes.position < 0 || !primitive.contains("indices"))
-    return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name),
-                kExportAgain);
+    refuse("{}: compressed without POSITION or indices", name);
   const auto countOf = [&](const json& accessor) {
     return document.at("accessors", accessor.get<std::size_t>()).at("count").get<std::uint32_t>();
   };
@@ -191,50 +154,33 @@ Result<DracoSource> dracoSource(const Document& document, const json& primitive,
 }
 
 // Reads JOINTS_n and WEIGHTS_n for n = 0, 1, ..., from the Draco buffer if they are there.
-Result<std::vector<Influences>> readInfluences(const Document& document, const json& primitive,
-                                               const DracoSource* draco, const std::string& name) {
+std::vector<Influences> readInfluences(const Document& document, const json& primitive,
+                                       const DracoSource* draco, const std::string& name) {
   const auto read = [&](const std::string& semantic) {
     const std::int32_t id = draco == nullptr ? -1 : draco->id(semantic);
     if (id < 0) return readVectors<glm::vec4>(document, primitive, semantic, {"VEC4"});
-    return bundle::decodeDracoAttribute(draco->bytes, draco->announced, id, semantic,
-                                        fmt::format("{}: {}", document.file(), name));
+    return orThrow(bundle::decodeDracoAttribute(draco->bytes, draco->announced, id, semantic,
+                                                fmt::format("{}: {}", document.file(), name)));
   };
   std::vector<Influences> sets;
-  for (int n = 0; primitive.at("attributes").contains(fmt::format("JOINTS_{}", n)); ++n) {
-    auto joints = read(fmt::format("JOINTS_{}", n));
-    if (!joints) return failAgain(std::move(joints.error()));
-    auto weights = read(fmt::format("WEIGHTS_{}", n));
-    if (!weights) return failAgain(std::move(weights.error()));
-    sets.push_back({std::move(*joints), std::move(*weights)});
-  }
+  for (int n = 0; primitive.at("attributes").contains(fmt::format("JOINTS_{}", n)); ++n)
+    sets.push_back({read(fmt::format("JOINTS_{}", n)), read(fmt::format("WEIGHTS_{}", n))});
   return sets;
 }
 
-// Requires that every attribute has a value for every vertex, and every index a vertex.
-Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influences>& influences,
-                         const std::string& file, const std::string& name) {
+// Requires joints and weights for every vertex, as mends have seen to for other attributes, and a vertex for
+// every index.
+void checkCounts(const bundle::MeshData& mesh, const std::vector<Influences>& influences,
+                 const std::string& name) {
   const std::size_t vertices = mesh.positions.size();
-  std::vector<std::pair<std::string, std::size_t>> counts{{"NORMAL", mesh.normals.size()},
-                                                          {"TEXCOORD_0", mesh.texcoords0.size()},
-                                                          {"TEXCOORD_1", mesh.texcoords1.size()},
-                                                          {"COLOR_0", mesh.colors.size()},
-                                                          {"TANGENT", mesh.tangents.size()}};
-  std::erase_if(counts, [](const auto& entry) { return entry.second == 0; });  // absent attributes
-  for (std::size_t n = 0; n < influences.size(); ++n) {
-    counts.emplace_back(fmt::format("JOINTS_{}", n), influences[n].joints.size());
-    counts.emplace_back(fmt::format("WEIGHTS_{}", n), influences[n].weights.size());
-  }
-  for (const auto& [semantic, count] : counts)
-    if (count != vertices)
-      return fail(file, fmt::format("{}: {} has {} elements, POSITION {}", name, semantic, count, vertices),
-                  kExportAgain);
+  for (std::size_t n = 0; n < influences.size(); ++n)
+    for (const auto& [semantic, count] :
+         {std::pair{"JOINTS", influences[n].joints.size()}, {"WEIGHTS", influences[n].weights.size()}})
+      if (count != vertices)
+        refuse("{}: {}_{} has {} elements, POSITION {}", name, semantic, n, count, vertices);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
     if (mesh.indices[i] >= vertices)
-      return fail(file,
-                  fmt::format("{}: index {} at place {} but there are {} vertices", name, mesh.indices[i], i,
-                              vertices),
-                  kExportAgain);
-  return {};
+      refuse("{}: index {} at place {} but there are {} vertices", name, mesh.indices[i], i, vertices);
 }
 
 constexpr int kTriangles = 4, kTriangleStrip = 5;  // the modes below are of points and lines, 6 is a fan
@@ -259,49 +205,35 @@ std::vector<std::uint32_t> toTriangles(const std::vector<std::uint32_t>& in, int
 
 }  // namespace
 
-Result<bundle::MeshData> readPrimitive(const Document& document, const json& primitive, const MeshPose& pose,
-                                       bool tangents, const std::string& name,
-                                       std::vector<std::string>& warnings) {
+bundle::MeshData readPrimitive(const Document& document, const json& primitive, const MeshPose& pose,
+                               bool tangents, const std::string& name, std::vector<std::string>& warnings) {
   const int mode = primitive.value("mode", kTriangles);
   if (mode < kTriangles) {
     warnings.push_back(fmt::format("{}: points and lines are left out", name));
-    return bundle::MeshData{};
+    return {};
   }
   const json& attributes = primitive.at("attributes");
   if (!attributes.contains("POSITION")) {
     warnings.push_back(fmt::format("{}: has no geometry and is left out", name));
-    return bundle::MeshData{};
+    return {};
   }
   // glTF gives no meaning to tangents without normals.
   tangents = tangents && attributes.contains("NORMAL");
-  DracoSource draco;
-  const bool compressed = !memberOf(primitive, {"extensions", kDraco}).is_null();
-  if (compressed) {
-    auto source = dracoSource(document, primitive, tangents, name);
-    if (!source) return failAgain(std::move(source.error()));
-    draco = std::move(*source);
-  }
-  auto mesh = compressed ? bundle::decodeDraco(draco.bytes, draco.announced,
-                                               fmt::format("{}: {}", document.file(), name))
-                         : readPlain(document, primitive, tangents);
-  if (!mesh) return mesh;
+  std::optional<DracoSource> draco;
+  if (!memberOf(primitive, {"extensions", kDraco}).is_null())
+    draco = dracoSource(document, primitive, tangents, name);
+  bundle::MeshData mesh = draco ? orThrow(bundle::decodeDraco(draco->bytes, draco->announced,
+                                                              fmt::format("{}: {}", document.file(), name)))
+                                : readPlain(document, primitive, tangents);
   std::vector<Influences> influences;
-  if (!pose.joints.empty()) {
-    auto read = readInfluences(document, primitive, compressed ? &draco : nullptr, name);
-    if (!read) return failAgain(std::move(read.error()));
-    influences = std::move(*read);
-  }
-  if (auto counts = checkCounts(*mesh, influences, document.file(), name); !counts)
-    return failAgain(std::move(counts.error()));
+  if (!pose.joints.empty()) influences = readInfluences(document, primitive, draco ? &*draco : nullptr, name);
+  checkCounts(mesh, influences, name);
   // Draco holds lists whatever the mode says.
-  if (!compressed) mesh->indices = toTriangles(mesh->indices, mode);
-  for (glm::vec4& color : mesh->colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
+  if (!draco) mesh.indices = toTriangles(mesh.indices, mode);
+  for (glm::vec4& color : mesh.colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
   // glTF applies targets first, then the skin.
-  if (auto done = applyMorphTargets(document, memberOf(primitive, {"targets"}), pose.weights, name, *mesh);
-      !done)
-    return failAgain(std::move(done.error()));
-  if (auto done = applySkin(influences, pose.joints, document.file(), name, *mesh); !done)
-    return failAgain(std::move(done.error()));
+  applyMorphTargets(document, memberOf(primitive, {"targets"}), pose.weights, name, mesh);
+  applySkin(influences, pose.joints, name, mesh);
   return mesh;
 }
 

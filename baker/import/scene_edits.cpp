@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
 #include "runtime/bundle/material_fields.hpp"
@@ -75,72 +77,52 @@ void applyLight(const SceneEdits::Light& edit, Scene& scene) {
   scene.lights.push_back(std::move(light));
 }
 
-json vectorJson(const glm::vec3& v) {
-  return {v.x, v.y, v.z};
-}
-glm::vec3 vectorFrom(const json& value) {
-  return {value.at(0).get<float>(), value.at(1).get<float>(), value.at(2).get<float>()};
+// Vectors and matrices are lists in JSON, matrices by columns as in glTF.
+template <class T>
+concept List = requires {
+  T::length();
+};
+
+template <class T>
+json toJson(const T& value) {
+  if constexpr (List<T>)
+    return std::vector(glm::value_ptr(value), glm::value_ptr(value) + sizeof(T) / sizeof(float));
+  else
+    return value;
 }
 
-json materialJson(const SceneEdits::Material& m) {
-  json to = {{"index", m.index}, {"name", m.name}};
-  for (const auto& [name, value] : m.values)
-    to[name] = std::visit(
-        []<class T>(const T& v) -> json {
-          if constexpr (std::is_same_v<T, glm::vec3>)
-            return vectorJson(v);
-          else
-            return v;
-        },
-        value);
-  return to;
+template <class T>
+void fromJson(const json& from, T& value) {
+  if constexpr (List<T>)
+    for (std::size_t i = 0; i < sizeof(T) / sizeof(float); ++i)
+      glm::value_ptr(value)[i] = from.at(i).template get<float>();
+  else
+    from.get_to(value);
 }
 
-SceneEdits::Material materialFrom(const json& from) {
-  SceneEdits::Material m;
-  from.at("index").get_to(m.index), from.at("name").get_to(m.name);
-  forEachValue([&]<class T>(const auto&, const gltf::LiveValue<T>& live) {
-    if (!from.contains(live.edit)) return;
-    if constexpr (std::is_same_v<T, glm::vec3>)
-      m.values[live.edit] = vectorFrom(from.at(live.edit));
-    else
-      m.values[live.edit] = from.at(live.edit).template get<T>();
-  });
-  return m;
+// Calls visit(name in JSON, member) for all that an edit holds but values of materials.
+template <class Edit, class Visit>
+void forEachMember(Edit& edit, const Visit& visit) {
+  visit("name", edit.name);
+  if constexpr (requires { edit.node; }) {
+    visit("node", edit.node);
+    visit("color", edit.color);
+    visit("intensity", edit.intensity);
+    visit("range", edit.range_m);
+    visit("innerCone", edit.inner_cone_rad);
+    visit("outerCone", edit.outer_cone_rad);
+  } else {
+    visit("index", edit.index);
+  }
+  if constexpr (requires { edit.parent_from_node; }) visit("matrix", edit.parent_from_node);
 }
 
-json nodeJson(const SceneEdits::Node& n) {
-  json matrix = json::array();  // by columns, as in glTF
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) matrix.push_back(n.parent_from_node[column][row]);
-  return {{"index", n.index}, {"name", n.name}, {"matrix", matrix}};
-}
-
-SceneEdits::Node nodeFrom(const json& from) {
-  SceneEdits::Node n;
-  from.at("index").get_to(n.index), from.at("name").get_to(n.name);
-  for (int i = 0; i < 16; ++i)
-    n.parent_from_node[i / 4][i % 4] = from.at("matrix").at(static_cast<std::size_t>(i)).get<float>();
-  return n;
-}
-
-json lightJson(const SceneEdits::Light& l) {
-  return {{"node", l.node},
-          {"name", l.name},
-          {"color", vectorJson(l.color)},
-          {"intensity", l.intensity},
-          {"range", l.range_m},
-          {"innerCone", l.inner_cone_rad},
-          {"outerCone", l.outer_cone_rad}};
-}
-
-SceneEdits::Light lightFrom(const json& from) {
-  SceneEdits::Light l;
-  from.at("node").get_to(l.node), from.at("name").get_to(l.name);
-  l.color = vectorFrom(from.at("color"));
-  from.at("intensity").get_to(l.intensity), from.at("range").get_to(l.range_m);
-  from.at("innerCone").get_to(l.inner_cone_rad), from.at("outerCone").get_to(l.outer_cone_rad);
-  return l;
+// Calls visit(name in JSON, list) for the lists of edits.
+template <class Edits, class Visit>
+void forEachList(Edits& edits, const Visit& visit) {
+  visit("nodes", edits.nodes);
+  visit("materials", edits.materials);
+  visit("lights", edits.lights);
 }
 
 }  // namespace
@@ -167,9 +149,15 @@ void applyEdits(const SceneEdits& edits, Scene& scene) {
 
 std::string editsText(const SceneEdits& edits) {
   json text = json::object();
-  for (const SceneEdits::Node& edit : edits.nodes) text["nodes"].push_back(nodeJson(edit));
-  for (const SceneEdits::Material& edit : edits.materials) text["materials"].push_back(materialJson(edit));
-  for (const SceneEdits::Light& edit : edits.lights) text["lights"].push_back(lightJson(edit));
+  forEachList(edits, [&](const char* list, const auto& all) {
+    for (const auto& edit : all) {
+      json& to = text[list].emplace_back();
+      forEachMember(edit, [&](const char* name, const auto& member) { to[name] = toJson(member); });
+      if constexpr (requires { edit.values; })
+        for (const auto& [name, value] : edit.values)
+          to[name] = std::visit([](const auto& v) { return toJson(v); }, value);
+    }
+  });
   return text.dump();
 }
 
@@ -178,87 +166,74 @@ std::optional<SceneEdits> readEdits(const std::string& text) {
   if (!from.is_object()) return std::nullopt;
   SceneEdits edits;
   try {
-    for (const json& edit : from.value("nodes", json::array())) edits.nodes.push_back(nodeFrom(edit));
-    for (const json& edit : from.value("materials", json::array()))
-      edits.materials.push_back(materialFrom(edit));
-    for (const json& edit : from.value("lights", json::array())) edits.lights.push_back(lightFrom(edit));
+    forEachList(edits, [&](const char* list, auto& all) {
+      for (const json& one : from.value(list, json::array())) {
+        auto& edit = all.emplace_back();
+        forEachMember(edit, [&](const char* name, auto& member) { fromJson(one.at(name), member); });
+        if constexpr (requires { edit.values; })
+          forEachValue([&]<class T>(const auto&, const gltf::LiveValue<T>& live) {
+            if (one.contains(live.edit))
+              fromJson(one.at(live.edit), edit.values[live.edit].template emplace<T>());
+          });
+      }
+    });
   } catch (const json::exception&) {
     return std::nullopt;
   }
   return edits;
 }
 
-namespace {
-
-// Offsets say where the parts of the added scene begin in the other.
-struct Offsets {
-  std::int32_t nodes, meshes, materials, brdfs, textures, images, cameras, lights;
-};
-
-template <typename T>
-std::int32_t countOf(const std::vector<T>& list) {
-  return static_cast<std::int32_t>(list.size());
-}
-
-void shift(std::int32_t& index, std::int32_t by) {
-  if (index >= 0) index += by;
-}
-
-void shift(gltf::Node& node, const Offsets& by) {
-  shift(node.parent, by.nodes);
-  for (std::int32_t& child : node.children) child += by.nodes;
-  shift(node.mesh, by.meshes);
-  shift(node.camera, by.cameras);
-  shift(node.light, by.lights);
-}
-
-void shift(gltf::Material& material, const Offsets& by) {
-  gltf::forEachMaterialTexture(
-      [&](const auto& field) { shift((material.*field.member).texture, by.textures); });
-  shift(material.brdf, by.brdfs);
-}
-
-template <typename T>
-void append(std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
-}  // namespace
-
 void joinScene(Scene from, const std::string& name, const glm::mat4& world_from_scene, Scene& to) {
-  const Offsets by{countOf(to.nodes),    countOf(to.meshes), countOf(to.materials), countOf(to.brdfs),
-                   countOf(to.textures), countOf(to.images), countOf(to.cameras),   countOf(to.lights)};
-  for (gltf::Node& node : from.nodes) shift(node, by);
-  for (SceneMesh& mesh : from.meshes)
-    for (ScenePrimitive& primitive : mesh.primitives) shift(primitive.material, by.materials);
-  for (gltf::Material& material : from.materials) shift(material, by);
-  for (gltf::Texture& texture : from.textures) shift(texture.image, by.images);
-  const auto first_node = static_cast<std::uint32_t>(by.nodes);
-  for (gltf::Animation& animation : from.animations)
-    for (gltf::AnimationChannel& channel : animation.channels) channel.node += first_node;
-  for (SceneVolume& volume : from.volumes) volume.node += first_node;
-  for (NeighborhoodRequest& request : from.neighborhoods) request.node += first_node;
-
-  append(from.nodes, to.nodes);
-  append(from.meshes, to.meshes);
-  append(from.materials, to.materials);
-  append(from.brdfs, to.brdfs);
-  append(from.textures, to.textures);
-  append(from.images, to.images);
-  append(from.cameras, to.cameras);
-  append(from.lights, to.lights);
-  append(from.animations, to.animations);
-  append(from.volumes, to.volumes);
-  append(from.neighborhoods, to.neighborhoods);
+  // Appends a list, and returns how many elements were there before.
+  const auto append = [](auto& more, auto& list) {
+    const auto first = static_cast<std::int32_t>(list.size());
+    list.insert(list.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    return first;
+  };
+  const auto added = [](auto& list, std::int32_t first) {
+    return std::span(list).subspan(static_cast<std::size_t>(first));
+  };
+  const auto shift = [](std::int32_t& index, std::int32_t by) {
+    if (index >= 0) index += by;
+  };
+  const std::int32_t nodes = append(from.nodes, to.nodes), meshes = append(from.meshes, to.meshes),
+                     materials = append(from.materials, to.materials), brdfs = append(from.brdfs, to.brdfs),
+                     textures = append(from.textures, to.textures), images = append(from.images, to.images),
+                     cameras = append(from.cameras, to.cameras), lights = append(from.lights, to.lights),
+                     animations = append(from.animations, to.animations),
+                     volumes = append(from.volumes, to.volumes),
+                     neighborhoods = append(from.neighborhoods, to.neighborhoods);
   append(from.warnings, to.warnings);
+  const auto first_node = static_cast<std::uint32_t>(nodes);
+  for (gltf::Node& node : added(to.nodes, nodes)) {
+    shift(node.parent, nodes);
+    for (std::int32_t& child : node.children) child += nodes;
+    shift(node.mesh, meshes);
+    shift(node.camera, cameras);
+    shift(node.light, lights);
+  }
+  for (SceneMesh& mesh : added(to.meshes, meshes))
+    for (ScenePrimitive& primitive : mesh.primitives) shift(primitive.material, materials);
+  for (gltf::Material& material : added(to.materials, materials)) {
+    gltf::forEachMaterialTexture(
+        [&](const auto& field) { shift((material.*field.member).texture, textures); });
+    shift(material.brdf, brdfs);
+  }
+  for (gltf::Texture& texture : added(to.textures, textures)) shift(texture.image, images);
+  for (gltf::Animation& animation : added(to.animations, animations))
+    for (gltf::AnimationChannel& channel : animation.channels) channel.node += first_node;
+  for (SceneVolume& volume : added(to.volumes, volumes)) volume.node += first_node;
+  for (NeighborhoodRequest& request : added(to.neighborhoods, neighborhoods)) request.node += first_node;
 
-  const std::int32_t root = countOf(to.nodes);
-  gltf::Node& place = to.nodes.emplace_back();
+  const auto root = static_cast<std::int32_t>(to.nodes.size());
+  gltf::Node place;
   place.name = name;
   place.parent_from_node = world_from_scene;
-  for (const std::int32_t child : from.roots) place.children.push_back(child + by.nodes);
-  const std::vector<std::int32_t> children = place.children;
-  for (const std::int32_t child : children) to.nodes[static_cast<std::size_t>(child)].parent = root;
+  for (const std::int32_t child : from.roots) {
+    place.children.push_back(child + nodes);
+    to.nodes[static_cast<std::size_t>(child + nodes)].parent = root;
+  }
+  to.nodes.push_back(std::move(place));
   to.roots.push_back(root);
 }
 

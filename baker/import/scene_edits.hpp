@@ -56,7 +56,7 @@ SceneEdits::Material overlaid(const SceneEdits::Material& below, SceneEdits::Mat
 
 void applyEdits(const SceneEdits& edits, Scene& scene);
 
-// Edits as JSON, for journals and world files. readEdits returns nothing if the text holds no edits.
+// Edits as JSON, for world files. readEdits returns nothing if the text holds no edits.
 std::string editsText(const SceneEdits& edits);
 std::optional<SceneEdits> readEdits(const std::string& text);
 

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -13,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 
@@ -33,72 +30,58 @@ struct Chunk {
 };
 
 // Reads the chunk at `at` and moves `at` past it.
-Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const std::string& file) {
-  if (glb.size() - at < kGlbChunkHeaderBytes)
-    return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExportAgain);
+Chunk readChunk(std::span<const std::byte> glb, std::size_t& at) {
+  if (glb.size() - at < kGlbChunkHeaderBytes) refuse("GLB chunk at byte {} has no header", at);
   const std::uint32_t length = readU32(glb, at);
   const std::uint32_t type = readU32(glb, at + 4);
   at += kGlbChunkHeaderBytes;
   if (length > glb.size() - at)
-    return fail(file, fmt::format("GLB chunk at byte {} claims {} bytes of {}", at, length, glb.size() - at),
-                kExportAgain);
+    refuse("GLB chunk at byte {} claims {} bytes of {}", at, length, glb.size() - at);
   const Chunk chunk{type, glb.subspan(at, length)};
   at += length;
   return chunk;
 }
 
-Result<Container> takeApart(std::span<const std::byte> glb, const std::string& file) {
-  if (glb.size() < kGlbHeaderBytes) return fail(file, "GLB is truncated", kExportAgain);
+Container takeApart(std::span<const std::byte> glb) {
+  if (glb.size() < kGlbHeaderBytes) refuse("GLB is truncated");
   if (readU32(glb, 4) != 2)
-    return fail(file, fmt::format("GLB has version {}, not 2", readU32(glb, 4)),
-                "convert the scene to glTF 2.0");
+    throw Error{
+        {}, fmt::format("GLB has version {}, not 2", readU32(glb, 4)), "convert the scene to glTF 2.0"};
   const std::uint32_t length = readU32(glb, 8);
   if (length > glb.size() || length < kGlbHeaderBytes)
-    return fail(file, fmt::format("GLB is truncated: {} bytes of {}", glb.size(), length), kExportAgain);
+    refuse("GLB is truncated: {} bytes of {}", glb.size(), length);
   glb = glb.first(length);
 
   std::size_t at = kGlbHeaderBytes;
-  auto text = readChunk(glb, at, file);
-  if (!text) return failAgain(std::move(text.error()));
-  if (text->type != bundle::kGlbJsonChunk)
-    return fail(file, "GLB does not start with a JSON chunk", kExportAgain);
-  Container container;
-  container.json.assign(reinterpret_cast<const char*>(text->bytes.data()), text->bytes.size());
+  const Chunk text = readChunk(glb, at);
+  if (text.type != bundle::kGlbJsonChunk) refuse("GLB does not start with a JSON chunk");
+  Container container{{reinterpret_cast<const char*>(text.bytes.data()), text.bytes.size()}, {}};
   if (at < glb.size()) {
-    auto binary = readChunk(glb, at, file);
-    if (!binary) return failAgain(std::move(binary.error()));
+    const Chunk binary = readChunk(glb, at);
     // Chunks of unknown type must be ignored; the binary chunk, if any, is the second.
-    if (binary->type == bundle::kGlbBinChunk)
-      container.binary.assign(binary->bytes.begin(), binary->bytes.end());
+    if (binary.type == bundle::kGlbBinChunk)
+      container.binary.assign(binary.bytes.begin(), binary.bytes.end());
   }
   return container;
 }
 
 }  // namespace
 
-Result<std::vector<std::byte>> readBytes(const std::filesystem::path& path, const std::string& subject) {
-  if (auto checked = checkRegularFile(path, "a file"); !checked)
-    return fail(subject, checked.error().problem, checked.error().hint);
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream in(path, std::ios::binary);
-  if (error || !in) return fail(subject, "cannot be opened", "check its permissions");
-  std::vector<std::byte> bytes(size);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(in.gcount()) != size)
-    return fail(subject, "cannot be read to its end", "try again");
-  return bytes;
+std::vector<std::byte> readBytes(const std::filesystem::path& path, const std::string& subject) {
+  const auto text = readTextFile(path);
+  if (!text) throw Error{subject, text.error().problem, text.error().hint};
+  const auto bytes = std::as_bytes(std::span(*text));
+  return {bytes.begin(), bytes.end()};
 }
 
 Result<Container> openContainer(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  auto bytes = readBytes(path, file);
-  if (!bytes) return failAgain(std::move(bytes.error()));
-  if (bytes->size() >= 4 && readU32(*bytes, 0) == kGlbMagic) return takeApart(*bytes, file);
-  if (bytes->empty()) return fail(file, "is empty", kExportAgain);
-  Container container;
-  container.json.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-  return container;
+  return resultOf(path.string(), "read", kExportAgain, [&] {
+    std::string text = orThrow(readTextFile(path));
+    const auto bytes = std::as_bytes(std::span(text));
+    if (bytes.size() >= 4 && readU32(bytes, 0) == kGlbMagic) return takeApart(bytes);
+    if (text.empty()) refuse("is empty");
+    return Container{std::move(text), {}};
+  });
 }
 
 namespace {
@@ -112,8 +95,8 @@ bool sameLetters(std::string_view a, std::string_view b) {
 }
 
 // Decodes base64 (RFC 4648), also in the alphabet for URLs. Padding may be missing and lines may be broken;
-// any other wrong character gives nothing.
-std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
+// any other wrong character is an error about `subject`.
+std::vector<std::byte> decodeBase64(std::string_view text, const std::string& subject) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<std::byte> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
@@ -122,7 +105,8 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
   for (const char c : text) {
     if (c == '=' || c == '\n' || c == '\r' || c == ' ') continue;
     const std::size_t digit = kDigits.find(c == '-' ? '+' : c == '_' ? '/' : c);
-    if (digit == std::string_view::npos) return std::nullopt;
+    if (digit == std::string_view::npos)
+      throw Error{subject, "has a data URI that is not base64", kExportAgain};
     bits = (bits << 6) | static_cast<std::uint32_t>(digit);
     count += 6;
     if (count < 8) continue;
@@ -133,19 +117,17 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
 }
 
 // Decodes a data: URI (RFC 2397), whose words may be in letters of any case.
-std::optional<std::vector<std::byte>> decodeData(const std::string& uri) {
+std::vector<std::byte> decodeData(const std::string& uri, const std::string& subject) {
   constexpr std::string_view kBase64 = ";base64";
   const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos) return std::nullopt;
-  const std::string_view head = std::string_view(uri).substr(0, comma),
-                         data = std::string_view(uri).substr(comma + 1);
+  if (comma == std::string::npos) throw Error{subject, "has a data URI that is not base64", kExportAgain};
+  const std::string head = uri.substr(0, comma), data = uri.substr(comma + 1);
   const bool base64 =
       head.size() >= kBase64.size() && sameLetters(head.substr(head.size() - kBase64.size()), kBase64);
-  if (base64 && data.find('%') == std::string_view::npos) return decodeBase64(data);
-  const std::string text = decodePercent(std::string(data));
-  if (base64) return decodeBase64(text);
+  const std::string text = decodePercent(data);
+  if (base64) return decodeBase64(text, subject);
   const auto bytes = std::as_bytes(std::span(text));
-  return std::vector<std::byte>(bytes.begin(), bytes.end());
+  return {bytes.begin(), bytes.end()};
 }
 
 // Returns the entry of a folder with this name, or else the first one whose name differs only in the case of
@@ -196,17 +178,17 @@ std::string decodePercent(const std::string& uri) {
   return decoded;
 }
 
-Result<std::filesystem::path> resolveUri(const std::filesystem::path& scene, const std::string& uri,
-                                         const ImportOptions& options, const std::string& object,
-                                         std::vector<std::string>& warnings) {
+std::filesystem::path resolveUri(const std::filesystem::path& scene, const std::string& uri,
+                                 const ImportOptions& options, const std::string& object,
+                                 std::vector<std::string>& warnings) {
   const std::string shown = uri.substr(0, 80), subject = fmt::format("{}: {}", scene.string(), object);
   const std::size_t colon = uri.find(':');
   if (colon != std::string::npos && uri.find_first_of("/?#") > colon)
-    return fail(subject, fmt::format("has the URI \"{}\", which is not a file beside the scene", shown),
-                "save the data into the scene's folder");
+    throw Error{subject, fmt::format("has the URI \"{}\", which is not a file beside the scene", shown),
+                "save the data into the scene's folder"};
   const std::string name = decodePercent(uri);
   if (name.empty() || name.find('\0') != std::string::npos)
-    return fail(subject, "has an empty or broken URI", kExportAgain);
+    throw Error{subject, "has an empty or broken URI", kExportAgain};
 
   std::error_code error;
   // A scene named without a folder lies in the current one; an empty path has no canonical form.
@@ -218,27 +200,21 @@ Result<std::filesystem::path> resolveUri(const std::filesystem::path& scene, con
   const auto relative = error ? std::filesystem::path("..") : file.lexically_relative(home);
   const bool outside = relative.empty() || *relative.begin() == ".." || relative == ".";
   if (outside && (error || !options.allow_outside))
-    return fail(subject, fmt::format("\"{}\" lies outside the scene's folder", shown),
-                "move it beside the scene, or pass --allow-outside");
+    throw Error{subject, fmt::format("\"{}\" lies outside the scene's folder", shown),
+                "move it beside the scene, or pass --allow-outside"};
   if (meant != home / name)
     warnings.push_back(fmt::format("{}: \"{}\" is read from \"{}\"", object, shown,
                                    meant.lexically_relative(home).string()));
   return file;
 }
 
-Result<std::vector<std::byte>> readUri(const std::filesystem::path& scene, const std::string& uri,
-                                       const ImportOptions& options, const std::string& object,
-                                       std::vector<std::string>& warnings) {
-  if (sameLetters(std::string_view(uri).substr(0, 5), "data:")) {
-    auto bytes = decodeData(uri);
-    if (!bytes)
-      return fail(fmt::format("{}: {}", scene.string(), object), "has a data URI that is not base64",
-                  kExportAgain);
-    return std::move(*bytes);
-  }
+std::vector<std::byte> readUri(const std::filesystem::path& scene, const std::string& uri,
+                               const ImportOptions& options, const std::string& object,
+                               std::vector<std::string>& warnings) {
+  const std::string subject = fmt::format("{}: {}", scene.string(), object);
+  if (sameLetters(std::string_view(uri).substr(0, 5), "data:")) return decodeData(uri, subject);
   const auto found = resolveUri(scene, uri, options, object, warnings);
-  if (!found) return failAgain(found.error());
-  return readBytes(*found, fmt::format("{}: {} ({})", scene.string(), object, found->filename().string()));
+  return readBytes(found, fmt::format("{} ({})", subject, found.filename().string()));
 }
 
 }  // namespace lambent::baker

@@ -66,15 +66,15 @@ class Raster {
 
 }  // namespace
 
-void checkTextureTransfer(const Object& owner) {
-  const nlohmann::json& ours = memberOf(owner.json, {"extras", "lambent"});
-  if (!ours.contains(kKey)) return;
-  const nlohmann::json& value = ours[kKey];
+void checkTextureTransfer(const nlohmann::json& owner, const std::string& name) {
+  const nlohmann::json& value = texelsIn(owner);
+  if (value.is_null()) return;
   const std::uint64_t texels = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
   if (texels < kLeastTexels || texels > kMostTexels || !std::has_single_bit(texels))
-    throw BrokenField{fmt::format("{}: extras: lambent: {} is {}, not a power of two from {} to {}",
-                                  owner.name, kKey, value.dump(), kLeastTexels, kMostTexels),
-                      "correct it, or leave it out for transfer at vertices"};
+    throw Error{{},
+                fmt::format("{}: extras: lambent: {} is {}, not a power of two from {} to {}", name, kKey,
+                            value.dump(), kLeastTexels, kMostTexels),
+                "correct it, or leave it out for transfer at vertices"};
 }
 
 std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive) {

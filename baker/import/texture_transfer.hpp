@@ -12,13 +12,11 @@
 
 namespace lambent::baker {
 
-struct Object;
-
 // The texture is a square of so many texels; a power of two.
 inline constexpr std::uint32_t kLeastTexels = 16, kMostTexels = 2048;
 
-// Throws BrokenField if the mesh or primitive asks for anything else.
-void checkTextureTransfer(const Object& owner);
+// Throws an Error if the mesh or primitive asks for anything else.
+void checkTextureTransfer(const nlohmann::json& owner, const std::string& name);
 // Returns the texels along a side that the primitive asks for, else its mesh; 0 if neither does. Both were
 // checked.
 std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive);

@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
-// Keeps whole results in the cache, under the key of a context, by write() and read() (cache/bytes.hpp).
+// Keeps whole results in the cache, under the key of a context, by write() and read() (cache/key.hpp).
 
 // Returns whether the value was found.
 template <typename T>

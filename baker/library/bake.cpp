@@ -14,7 +14,6 @@
 #include "baker/bake/options.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/library/convert.hpp"
 #include "runtime/spec/light.hpp"

@@ -16,7 +16,7 @@
 
 #include "baker/plan/local_light.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 

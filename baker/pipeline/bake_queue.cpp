@@ -10,10 +10,11 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/whole_progress.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 
@@ -24,6 +25,35 @@ namespace fs = std::filesystem;
 constexpr const char* kPreviewFolder = "previews";
 // Previews that killed programs left behind are removed after this time.
 constexpr std::chrono::hours kPreviewsKept{24 * 7};
+
+constexpr std::uint32_t kCoarseRays = 128;
+constexpr float kCoarseErrorBound = 0.03f;
+constexpr std::uint32_t kCoarseVolumeGrid = 12;
+constexpr glm::uvec3 kCoarseNeighborhoodGrid{12, 12, 6};
+
+// Returns the options of a level for a bake that asked for `asked`; they are never finer than those.
+BakeOptions previewLevelOptions(PreviewLevel preview_level, const BakeOptions& asked) {
+  BakeOptions options = asked;
+  if (preview_level != PreviewLevel::Coarse) return options;
+  options.quality = Quality::Draft;
+  options.rays = kCoarseRays;
+  options.bounces = asked.bounces == 0 ? 0 : 1;
+  options.picture_bound = 0.0f;
+  options.error_bound = std::max(kCoarseErrorBound, asked.effectiveErrorBound());
+  options.refine_bound = 0.0f;
+  options.fit = false;
+  options.volume_grid = glm::min(asked.volume_grid, glm::uvec3(kCoarseVolumeGrid));
+  options.neighborhood_grid = asked.neighborhood_grid == glm::uvec3(0u)
+                                  ? kCoarseNeighborhoodGrid
+                                  : glm::min(asked.neighborhood_grid, kCoarseNeighborhoodGrid);
+  return options;
+}
+
+// Returns 16 hex digits, for file names, which scene and output decide.
+std::string requestKey(const BakeRequest& request) {
+  const std::string text = plainPath(request.scene).string() + '\n' + plainPath(request.output).string();
+  return fmt::format("{:016x}", bundle::checksum(std::as_bytes(std::span(text))));
+}
 
 // Step is the next step of a job. A trial is a final bake with little time.
 enum class Step : std::uint8_t { Trial, Unshadowed, Coarse, Final };
@@ -37,10 +67,7 @@ struct Job {
   JobState state;
   std::uint64_t asked = 0;  // rises with every request, so that the newest comes first
   Step step = Step::Final;
-  bool tried = false;  // the trial was made
-  bool begun = false;
-  Journal::Entry record;
-  std::optional<std::string> unrecorded;     // says that the journal could not be written
+  bool tried = false;                        // the trial was made
   double coarse_seconds = 0.0;               // what the coarse preview took, once it is done
   std::shared_ptr<const Progress> progress;  // of the step that runs
   std::optional<WholeProgress> whole;        // of that step, once the scene is known
@@ -93,29 +120,36 @@ double total(std::span<const Progress::Stage> stages) {
 
 }  // namespace
 
+const char* previewLevelName(PreviewLevel preview_level) {
+  static constexpr std::array kNames = {"unshadowed", "coarse", "final"};
+  return kNames[static_cast<std::size_t>(preview_level)];
+}
+
+fs::path plainPath(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path absolute = fs::absolute(path, ignored);
+  return (ignored ? path : absolute).lexically_normal();
+}
+
 const char* phaseName(JobPhase phase) {
   static constexpr std::array kNames = {"waiting", "importing", "baking", "done", "failed", "cancelled"};
   return kNames[static_cast<std::size_t>(phase)];
 }
 
 struct BakeQueue::Impl {
-  explicit Impl(QueueSettings given)
-      : settings(std::move(given)),
-        journal(settings.work_folder.empty() ? fs::path() : settings.work_folder / kJournalFolder) {
-    settings.previews = settings.previews && !settings.work_folder.empty();
-    if (!settings.previews) return;
+  explicit Impl(QueueSettings given) : settings(std::move(given)) {
+    if (settings.work_folder.empty()) return;
     std::error_code failed;
     fs::create_directories(settings.work_folder / kPreviewFolder, failed);
-    if (failed) settings.previews = false;
+    previews = !failed;
     removeOldPreviews(settings.work_folder / kPreviewFolder);
   }
 
   QueueSettings settings;
-  Journal journal;
+  bool previews = false;
 
   mutable std::mutex lock;
-  std::condition_variable_any changed;   // wakes the worker
-  std::condition_variable_any happened;  // wakes whoever waits for events
+  std::condition_variable_any changed;  // wakes the worker
   std::vector<std::shared_ptr<Job>> jobs;
   std::vector<BakeEvent> events;
   std::uint64_t asked = 0;
@@ -138,7 +172,7 @@ struct BakeQueue::Impl {
   }
 
   void removePreviews(const Job& job) const {
-    if (!settings.previews) return;
+    if (!previews) return;
     for (const PreviewLevel preview_level : {PreviewLevel::Unshadowed, PreviewLevel::Coarse}) {
       std::error_code ignored;
       fs::remove(placeOf(job, preview_level), ignored);
@@ -148,7 +182,6 @@ struct BakeQueue::Impl {
   void tell(BakeEvent::Kind kind, const Job& job, PreviewLevel preview_level = PreviewLevel::Final,
             fs::path bundle = {}) {
     events.push_back({kind, job.state.id, preview_level, std::move(bundle)});
-    happened.notify_all();
   }
 
   std::shared_ptr<Job> find(JobId id) const {
@@ -157,7 +190,7 @@ struct BakeQueue::Impl {
   }
 
   Step firstStep(const BakeRequest& request) const {
-    if (!settings.previews) return Step::Final;
+    if (!previews) return Step::Final;
     // If a bundle exists, most of what is needed to bake it again is usually in the cache.
     std::error_code ignored;
     return settings.cache != nullptr && fs::exists(request.output, ignored) ? Step::Trial : Step::Unshadowed;
@@ -170,7 +203,7 @@ struct BakeQueue::Impl {
     job.state.request = std::move(request);
     job.asked = ++asked;
     job.step = firstStep(job.state.request);
-    job.tried = job.begun = false;
+    job.tried = false;
     job.whole.reset();
     job.coarse_seconds = 0.0;
     job.state.preview_level = previewLevelOf(job.step);
@@ -236,21 +269,11 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   job->progress = progress;
   job->state.preview_level = preview_level;
   job->state.phase = JobPhase::Importing;
-  if (!job->begun) tell(BakeEvent::Kind::Began, *job);
-  const bool record = !job->begun;
-  job->begun = true;
+  const bool first = !job->state.reached;
   const fs::path place = placeOf(*job, preview_level);
-  if (record) job->record = {};  // of the content before
   hold.unlock();
 
   const std::stop_callback stop_too(closing, [stop]() mutable { stop.request_stop(); });
-  Journal::Entry entry;
-  std::optional<std::string> unrecorded;
-  if (record) {
-    entry = journal.begin(request);
-    if (entry.error())
-      unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
-  }
   bool up_to_date = false;
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
@@ -261,7 +284,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       const auto scene = sceneOf(request, asked_then);
       if (!scene) return failAgain(scene.error());
       warnings = (*scene)->warnings;
-      if (record && isUpToDate(**scene, request.options, request.output)) {
+      if (first && isUpToDate(**scene, request.options, request.output)) {
         up_to_date = true;
         return BakeReport{};
       }
@@ -285,8 +308,10 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       }
       std::optional<Deadline> deadline;
       if (step == Step::Trial) deadline.emplace(stop, settings.trial);
-      return bakePreviewLevel(preview_level, **scene, request.options, place,
-                              {*progress, stop.get_token(), settings.cache});
+      const BakeContext context{*progress, stop.get_token(), settings.cache};
+      const BakeOptions options = previewLevelOptions(preview_level, request.options);
+      return preview_level == PreviewLevel::Unshadowed ? bakeUnshadowed(**scene, options, place, context)
+                                                       : bake(**scene, options, place, context);
     } catch (const std::exception& failure) {  // out of memory, most likely
       return fail(request.scene.string(), failure.what(), "free some memory or bake the scene in parts");
     }
@@ -295,11 +320,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
 
   hold.lock();
   running = nullptr;
-  if (job->asked != asked_then) {  // added again or cancelled meanwhile
-    if (job->state.phase == JobPhase::Cancelled) entry.done();
-    return;
-  }
-  if (record) job->record = std::move(entry), job->unrecorded = std::move(unrecorded);
+  if (job->asked != asked_then) return;  // added again or cancelled meanwhile
   JobState& state = job->state;
   const std::vector<Progress::Stage> stages = progress->finished();
   snapshot(*job);  // remembers the share
@@ -307,12 +328,10 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   job->progress = nullptr;
   job->whole.reset();
   state.warnings = warnings;
-  if (job->unrecorded) state.warnings.push_back(*job->unrecorded);
   if (!result) {
     if (!stop.stop_requested()) {
       state.phase = JobPhase::Failed;
       state.error = result.error();
-      job->record.done();
       tell(BakeEvent::Kind::Failed, *job, preview_level);
       return;
     }
@@ -333,7 +352,6 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   tell(BakeEvent::Kind::Bundle, *job, *state.reached, state.bundle);
   if (state.reached >= request.last) {
     state.phase = JobPhase::Done;
-    job->record.done();
     return;
   }
   if (preview_level == PreviewLevel::Coarse) job->coarse_seconds = total(stages);
@@ -390,7 +408,6 @@ void BakeQueue::cancel(JobId id) {
   job->asked = ++impl_->asked;  // so that the result of a running step is ignored
   job->state.phase = JobPhase::Cancelled;
   job->progress = nullptr;
-  job->record.done();
   impl_->tell(BakeEvent::Kind::Cancelled, *job);
 }
 
@@ -409,11 +426,6 @@ std::vector<BakeEvent> BakeQueue::takeEvents() {
 bool BakeQueue::busy() const {
   const std::lock_guard hold(impl_->lock);
   return impl_->running != nullptr || impl_->next() != nullptr;
-}
-
-void BakeQueue::waitForEvents(std::chrono::milliseconds time) {
-  std::unique_lock hold(impl_->lock);
-  impl_->happened.wait_for(hold, time, [&] { return !impl_->events.empty(); });
 }
 
 }  // namespace lambent::baker

@@ -1,14 +1,14 @@
 // The room baker/pipeline bakes in the background. The queue takes requests and works on one step at a time,
-// on a worker thread of its own: every job first unshadowed, then coarse, then final (bake_request.hpp), so
+// on a worker thread of its own: every job first unshadowed, then coarse, then final (PreviewLevel), so
 // that everything appears before any of it gets good. Among jobs at the same preview level, the latest
 // request comes first. A job that arrives while a final bake runs goes before it, which costs nothing if a
 // cache keeps the interrupted work. Only the final bundle is written under its own name; previews go into the
 // work folder, and are left out if the final bundle is up to date or ready within a second
 // (QueueSettings::trial).
 //
-// All calls are safe from any thread and never throw; all but waitForEvents() return at once. The error of a
-// job is part of its state. Destruction stops the worker within about a second; the next bake of the same
-// scene then finds what the cache kept, and the journal (journal.hpp) says which bakes were cut short.
+// All calls are safe from any thread, never throw and return at once. The error of a job is part of its
+// state. Destruction stops the worker within about a second; the next bake of the same scene then finds what
+// the cache kept.
 #pragma once
 
 #include <chrono>
@@ -21,10 +21,35 @@
 #include <vector>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cache/cache.hpp"
-#include "baker/pipeline/bake_request.hpp"
+#include "baker/import/scene_edits.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
+
+// A scene gets better in preview levels: at once unshadowed, then coarse transfer, then what was asked for.
+// Each is a complete bundle.
+enum class PreviewLevel : std::uint8_t {
+  Unshadowed,  // traces no rays (bakeUnshadowed)
+  Coarse,      // few rays, one bounce, no refinement; takes seconds
+  Final        // the options that were asked for
+};
+
+const char* previewLevelName(PreviewLevel preview_level);  // "unshadowed", "coarse", "final"
+
+// Says which scene to bake, into which bundle, and how. Two requests for the same scene and output are the
+// same job, whatever else they say.
+struct BakeRequest {
+  std::filesystem::path scene, output;
+  BakeOptions options{};
+  ImportOptions import{};
+  SceneEdits edits{};                       // applied to the scene before it is baked
+  PreviewLevel last = PreviewLevel::Final;  // the job is done at this level
+};
+
+// Returns the path made absolute and without "." and "..".
+std::filesystem::path plainPath(const std::filesystem::path& path);
 
 // Jobs, their states and events are plain values, for a user interface.
 struct JobId {
@@ -52,7 +77,7 @@ struct JobState {
   std::optional<double> seconds_left;  // of the whole job; nothing while it is unknown
 
   std::optional<Error> error;         // of a job that failed
-  std::vector<std::string> warnings;  // of the import and the journal, then the bake's notices
+  std::vector<std::string> warnings;  // of the import, then the bake's notices
   bool up_to_date = false;            // true if the job was done without baking
   std::optional<BakeReport> report;   // of `reached`, if it was baked here
 };
@@ -62,21 +87,19 @@ struct JobState {
 // which replaces it.
 struct BakeEvent {
   enum class Kind : std::uint8_t {
-    Began,   // the job was started, or restarted
     Bundle,  // `bundle` of `preview_level` is complete
     Failed,  // see JobState::error; complete bundles stay
     Cancelled
   };
-  Kind kind = Kind::Began;
+  Kind kind = Kind::Bundle;
   JobId job;
   PreviewLevel preview_level = PreviewLevel::Final;
   std::filesystem::path bundle;
 };
 
 struct QueueSettings {
-  std::filesystem::path work_folder;  // for previews and the journal; if empty, there are neither
+  std::filesystem::path work_folder;  // for previews; if empty, there are none
   Cache* cache = nullptr;             // must outlive the queue; null: no results are kept
-  bool previews = true;               // makes previews before the final bake
   // Time that a final bake gets before a preview is made instead; with everything in the cache it is enough.
   std::chrono::milliseconds trial{1000};
 };
@@ -99,8 +122,6 @@ class BakeQueue {
   std::vector<BakeEvent> takeEvents();
   // Returns whether any job waits or runs.
   bool busy() const;
-  // Returns when there are events to take, or after `time`.
-  void waitForEvents(std::chrono::milliseconds time);
 
  private:
   struct Impl;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <exception>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -12,31 +12,31 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/import/check.hpp"
-#include "baker/import/gltf.hpp"
 #include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
-void add(const json& uri, const std::filesystem::path& folder, std::vector<std::filesystem::path>& files) {
+void add(const json& uri, const fs::path& folder, std::vector<fs::path>& files) {
   if (!uri.is_string()) return;
   const auto text = uri.get<std::string>();
   if (text.empty() || text.find(':') != std::string::npos) return;  // such as data:, procedural: and http:
-  const std::filesystem::path file = folder / decodePercent(text);
+  const fs::path file = folder / decodePercent(text);
   if (std::ranges::find(files, file) == files.end()) files.push_back(file);
 }
 
-}  // namespace
-
-std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scene) {
-  std::vector<std::filesystem::path> files = {scene};
+// Returns the files that a scene names, itself first, whether they exist or not. This is best effort, from
+// its JSON alone.
+std::vector<fs::path> sourceFiles(const fs::path& scene) {
+  std::vector<fs::path> files = {scene};
   const auto container = openContainer(scene);
   if (!container) return files;
   const json document = json::parse(container->json, nullptr, /*allow_exceptions=*/false);
-  const std::filesystem::path folder = scene.parent_path();
+  const fs::path folder = scene.parent_path();
   for (const char* list : {"buffers", "images"})
     for (const json& entry : memberOf(document, {list})) add(memberOf(entry, {"uri"}), folder, files);
   for (const json& node : memberOf(document, {"nodes"}))
@@ -46,19 +46,6 @@ std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scen
   return files;
 }
 
-bool isSceneFile(const std::filesystem::path& path) {
-  const std::string name = path.filename().string();
-  if (name.empty() || name.front() == '.' || name.ends_with(".lmb.glb")) return false;
-  return path.extension() == ".gltf" || path.extension() == ".glb";
-}
-
-std::filesystem::path bundleBeside(const std::filesystem::path& scene) {
-  return scene.parent_path() / (scene.stem().string() + ".lmb.glb");
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 // A Stamp distinguishes one content of a file from another.
@@ -90,20 +77,22 @@ struct Watched {
   std::vector<Stamp> stamps;
   Clock::time_point moved;  // time of their last change
   std::optional<Clock::time_point> missing;
-  std::optional<Clock::time_point> failing;  // since when the present content fails to import
-  std::optional<Error> error;
-  bool dirty = true, told = false, complained = false;
+  bool dirty = true, told = false;
 };
 
-Result<void> tryImport(const fs::path& path, const ImportOptions& options) {
-  try {
-    const auto scene = importScene(path, options);
-    if (!scene) return failAgain(scene.error());
-    return {};
-  } catch (const std::exception& failure) {  // most likely out of memory
-    return fail(path.string(), failure.what(), "free some memory");
-  }
+}  // namespace
+
+bool isSceneFile(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (name.empty() || name.front() == '.' || name.ends_with(".lmb.glb")) return false;
+  return path.extension() == ".gltf" || path.extension() == ".glb";
 }
+
+fs::path bundleBeside(const fs::path& scene) {
+  return scene.parent_path() / (scene.stem().string() + ".lmb.glb");
+}
+
+namespace {
 
 // Collects the scenes of a folder and its subfolders, without hidden folders.
 void collect(const fs::path& folder, std::set<fs::path>& scenes) {
@@ -130,9 +119,9 @@ struct SourceWatch::Impl {
   std::map<fs::path, Watched> watched;  // used by the thread only
   std::jthread thread;                  // last, so that it stops before the rest is destroyed
 
-  void tell(WatchEvent::Kind kind, const fs::path& scene, std::optional<Error> error = {}) {
+  void tell(WatchEvent::Kind kind, const fs::path& scene) {
     const std::lock_guard hold(lock);
-    events.push_back({kind, scene, std::move(error)});
+    events.push_back({kind, scene});
   }
 
   void run(const std::stop_token& stop) {
@@ -197,37 +186,10 @@ void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
     state.stamps = std::move(stamps);
     state.moved = now;
     state.dirty = true;
-    state.error.reset();
-    state.failing.reset();
-    state.complained = false;  // the next error may be another one
     return;
   }
   if (!state.dirty || now - state.moved < settings.still_for) return;
-  // A scene that failed is imported again only before complaining, in case its time stamp is too coarse to
-  // show a change.
-  const bool overdue = state.failing && now - *state.failing >= settings.complain_after;
-  if (state.error && !(overdue && !state.complained)) return;
-  // Images that stay as they are for long are left out, as the import does.
-  ImportOptions options = settings.import;
-  options.whole_images = !overdue;
-  const Result<void> imported = tryImport(scene, options);
-  std::vector<fs::path> files = sourceFiles(scene);
-  // A file changed meanwhile, or the scene names new files.
-  if (files != state.files || stampsOf(files) != state.stamps) {
-    state.files = std::move(files);
-    state.stamps = stampsOf(state.files);
-    state.moved = now;
-    return;
-  }
-  if (!imported) {
-    state.error = imported.error();
-    if (!state.failing) state.failing = now;
-    if (overdue && !std::exchange(state.complained, true)) tell(WatchEvent::Kind::Broken, scene, state.error);
-    return;
-  }
-  state.dirty = state.complained = false;
-  state.failing.reset();
-  state.error.reset();
+  state.dirty = false;
   tell(std::exchange(state.told, true) ? WatchEvent::Kind::Changed : WatchEvent::Kind::Found, scene);
 }
 

@@ -1,8 +1,8 @@
 // Watches scenes on disk: .gltf and .glb files, single ones or all in a folder and its subfolders, with every
 // file that they refer to (buffers, images, volumes, BRDFs). It checks sizes and times a few times a second
 // on its own thread, which works on any file system. A change is reported once nothing has changed for a
-// moment and the whole scene imports; until then the old state stays, and an error is reported only if it
-// persists. Bundles (.lmb.glb) and hidden files are not scenes.
+// moment; whether the scene can be read is for its bake to say. Bundles (.lmb.glb) and hidden files are not
+// scenes.
 //
 // All calls are safe from any thread and never throw.
 #pragma once
@@ -11,31 +11,23 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <vector>
-
-#include "baker/import/scene_files.hpp"
-#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
 struct WatchSettings {
   std::chrono::milliseconds look_every{200};
   std::chrono::milliseconds still_for{400};  // how long files must be unchanged before a change counts
-  std::chrono::milliseconds complain_after{3000};
-  ImportOptions import;
 };
 
 struct WatchEvent {
   enum class Kind : std::uint8_t {
-    Found,    // a scene that imports, at the start or new
-    Changed,  // the scene, or a file that it refers to, changed; it imports
-    Broken,   // the scene has not imported for a while: see `error`
+    Found,    // a scene, at the start or new
+    Changed,  // the scene, or a file that it refers to, changed
     Removed   // the scene file itself is gone
   };
   Kind kind = Kind::Found;
   std::filesystem::path scene;
-  std::optional<Error> error;
 };
 
 class SourceWatch {
@@ -54,10 +46,6 @@ class SourceWatch {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-// Returns the files that a scene names, itself first, whether they exist or not. This is best effort, from
-// its JSON alone.
-std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scene);
 
 // Returns whether the name is that of a scene to bake: .gltf or .glb, not .lmb.glb, not hidden.
 bool isSceneFile(const std::filesystem::path& path);

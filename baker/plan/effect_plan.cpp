@@ -31,6 +31,15 @@ constexpr double kMostComparisons = 3e8;
 
 using Triangle = std::array<glm::dvec3, 3>;
 
+struct BodyBox {
+  glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
+
+  void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  bool holds(const BodyBox& other) const {
+    return glm::all(glm::lessThanEqual(low, other.low)) && glm::all(glm::lessThanEqual(other.high, high));
+  }
+};
+
 // A Body is a group's surfaces in the group's frame.
 struct Body {
   std::vector<glm::dvec3> points;
@@ -41,7 +50,7 @@ struct Body {
 
 Body bodyOf(const Scene& scene, const RigidGroup& group) {
   Body body;
-  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  BodyBox all;
   for (const PlannedDraw& draw : group.draws) {
     const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
     const auto place = [&](const glm::vec3& p) {
@@ -49,7 +58,7 @@ Body bodyOf(const Scene& scene, const RigidGroup& group) {
     };
     for (const glm::vec3& p : mesh.positions) {
       body.points.push_back(place(p));
-      low = glm::min(low, body.points.back()), high = glm::max(high, body.points.back());
+      all.add(body.points.back());
     }
     const bool turned = draw.back != (glm::determinant(glm::mat3(draw.group_from_mesh)) < 0.0f);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -60,7 +69,7 @@ Body bodyOf(const Scene& scene, const RigidGroup& group) {
     }
   }
   if (body.points.empty()) return body;
-  body.diagonal = glm::distance(low, high);
+  body.diagonal = glm::distance(all.low, all.high);
   for (const PlannedDraw& draw : group.draws) {
     const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
     const std::size_t first = body.sizes.size();
@@ -69,11 +78,10 @@ Body bodyOf(const Scene& scene, const RigidGroup& group) {
         static_cast<float>(std::cbrt(std::abs(glm::determinant(glm::dmat3(draw.group_from_mesh)))));
     if (!bends(static_cast<float>(0.2 * kLevel * body.diagonal), scale * detailOf(mesh))) continue;
     // It has a lattice of its own.
-    low = glm::dvec3(std::numeric_limits<double>::max()), high = -low;
-    for (std::size_t i = first; i < body.sizes.size(); ++i)
-      low = glm::min(low, body.points[i]), high = glm::max(high, body.points[i]);
+    BodyBox own;
+    for (std::size_t i = first; i < body.sizes.size(); ++i) own.add(body.points[i]);
     std::fill(body.sizes.begin() + static_cast<std::ptrdiff_t>(first), body.sizes.end(),
-              glm::distance(low, high));
+              glm::distance(own.low, own.high));
   }
   return body;
 }
@@ -246,15 +254,6 @@ constexpr double kMostBoxes = 3e8;  // likewise, comparisons of boxes
 // Points count as within a closed surface from this winding number on. It is 1 inside, 0 outside and
 // something between on the surface.
 constexpr double kWithin = 0.25;
-
-struct BodyBox {
-  glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
-
-  void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool holds(const BodyBox& other) const {
-    return glm::all(glm::lessThanEqual(low, other.low)) && glm::all(glm::lessThanEqual(other.high, high));
-  }
-};
 
 // A Part is a connected part of a primitive, with vertices of the mesh.
 struct Part {

@@ -13,6 +13,7 @@
 #include "baker/plan/local_light.hpp"
 #include "baker/plan/neighborhoods.hpp"
 #include "baker/plan/rigid_groups.hpp"
+#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
@@ -42,7 +43,7 @@ std::vector<PlannedTransport> planTransport(const Scene& scene, const std::vecto
 // The room baker/plan decides what will be baked for a scene, what will not, and why: only the effects that a
 // scene calls for are simulated. A scene comes in; its rigid groups, their lights, light probes and
 // neighborhoods, and a reason for each choice go out. Each effect decides for itself whether the scene calls
-// for it (baker/effects/effect_list.hpp), and `lambent plan` prints the outcome. Planning is deterministic,
+// for it (effects.cpp), and `lambent plan` prints the outcome. Planning is deterministic,
 // runs on the calling thread and has no errors.
 
 struct EffectChoice {
@@ -53,9 +54,13 @@ struct EffectChoice {
 
 // EffectEntry is one entry of the list of effects.
 struct EffectEntry {
-  const char* name;
+  std::string_view name;
   EffectChoice (*choose)(const Scene& scene, const std::vector<RigidGroup>& groups);
 };
+
+// Returns all effects for "auto" and "all", else those of a list such as "diffuse,glossy". The error names
+// the effect that is not known.
+Result<std::vector<EffectEntry>> effectsNamed(std::string_view words);
 
 struct EffectPlan {
   std::vector<RigidGroup> groups;

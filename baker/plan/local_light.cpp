@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kTimes = 64;
+constexpr std::size_t kTimes = 64;
 constexpr float kTouch = 1e-3f;  // share of the larger body's half-size
 // A body can move about on another only if the ratio of their half-sizes is below this.
 constexpr float kMuchSmaller = 0.5f;
@@ -45,65 +46,59 @@ bool movesAboutOn(const Box& body, const Box& other) {
   return muchSmaller(body, other) && body.meets(other, kTouch * other.halfSize());
 }
 
-Motion::Motion(const Scene& scene, const std::vector<RigidGroup>& groups) : scene_(scene), groups_(groups) {
+std::vector<Moment> momentsOf(const Scene& scene, const std::vector<RigidGroup>& groups) {
+  std::vector<std::vector<std::vector<glm::vec3>>> points;  // by mesh and primitive
   for (const SceneMesh& mesh : scene.meshes) {
-    auto& points = points_.emplace_back();
-    for (const ScenePrimitive& primitive : mesh.primitives) points.push_back(outerPoints(primitive.mesh));
+    auto& of_mesh = points.emplace_back();
+    for (const ScenePrimitive& primitive : mesh.primitives) of_mesh.push_back(outerPoints(primitive.mesh));
   }
-  for (const RigidGroup& group : groups) {
-    auto& shining = shining_.emplace_back();
-    for (const PlannedLight& light : findGroupLights(scene, group))
-      if (light.kind == PlannedLight::Kind::Material) shining.insert(static_cast<std::int32_t>(light.index));
-  }
+  std::vector<std::set<std::int32_t>> shining(groups.size());  // emissive materials, by group
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const PlannedLight& light : findGroupLights(scene, groups[g]))
+      if (light.kind == PlannedLight::Kind::Material)
+        shining[g].insert(static_cast<std::int32_t>(light.index));
+  float duration_s = 0.0f;
   for (const gltf::Animation& animation : scene.animations)
-    duration_s_ = std::max(duration_s_, gltf::durationOf(animation));
-}
+    duration_s = std::max(duration_s, gltf::durationOf(animation));
 
-int Motion::times() const {
-  return scene_.animations.empty() ? 1 : 1 + kTimes;
-}
-
-Moment Motion::at(int time) const {
-  std::vector<gltf::Node> nodes = scene_.nodes;
-  if (time > 0)
-    gltf::applyAnimations(scene_.animations, duration_s_ * static_cast<float>(time - 1) / float{kTimes - 1},
-                          nodes);
-  const std::vector<glm::mat4> world = gltf::worldTransforms(nodes);
-  Moment moment;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    PlacedBody& body = moment.bodies.emplace_back();
-    if (groups_[g].volume >= 0) {
-      const SceneVolume& volume = scene_.volumes[static_cast<std::size_t>(groups_[g].volume)];
-      const glm::mat4 placed = world[volume.node] * volume.node_from_grid;
-      for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 at = glm::vec3(volume.size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        body.medium.add(glm::vec3(placed * glm::vec4(at, 1.0f)));
+  std::vector<Moment> moments(scene.animations.empty() ? 1 : 1 + kTimes);
+  for (std::size_t time = 0; time < moments.size(); ++time) {
+    Moment& moment = moments[time];
+    std::vector<gltf::Node> nodes = scene.nodes;
+    if (time > 0)
+      gltf::applyAnimations(scene.animations,
+                            duration_s * static_cast<float>(time - 1) / static_cast<float>(kTimes - 1),
+                            nodes);
+    moment.world = gltf::worldTransforms(nodes);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      PlacedBody& body = moment.bodies.emplace_back();
+      if (groups[g].volume >= 0) {
+        const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(groups[g].volume)];
+        const glm::mat4 placed = moment.world[volume.node] * volume.node_from_grid;
+        for (int corner = 0; corner < 8; ++corner) {
+          const glm::vec3 at = glm::vec3(volume.size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
+          body.medium.add(glm::vec3(placed * glm::vec4(at, 1.0f)));
+        }
+      }
+      for (const PlannedDraw& draw : groups[g].draws) {
+        const std::int32_t material = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+        const bool shines = shining[g].contains(material);
+        for (const glm::vec3& p : points[draw.mesh][draw.primitive]) {
+          const glm::vec3 placed(moment.world[draw.node] * glm::vec4(p, 1.0f));
+          body.all.add(placed);
+          if (shines) body.shining.add(placed);
+        }
       }
     }
-    for (const PlannedDraw& draw : groups_[g].draws) {
-      const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
-      const bool shines = shining_[g].contains(material);
-      for (const glm::vec3& p : points_[draw.mesh][draw.primitive]) {
-        const glm::vec3 placed(world[draw.node] * glm::vec4(p, 1.0f));
-        body.all.add(placed);
-        if (shines) body.shining.add(placed);
-      }
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+      if (nodes[n].light < 0) continue;
+      const gltf::Light& light = scene.lights[static_cast<std::size_t>(nodes[n].light)];
+      const glm::vec3 power = light.intensity * light.color;
+      if (light.type == gltf::Light::Type::Directional || !(glm::dot(power, power) > 0.0f)) continue;
+      moment.lamps.push_back({n, groupRootOf(scene, n), light.range_m, glm::vec3(moment.world[n][3])});
     }
   }
-  moment.world = world;
-  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-    if (nodes[n].light < 0) continue;
-    const gltf::Light& light = scene_.lights[static_cast<std::size_t>(nodes[n].light)];
-    const glm::vec3 power = light.intensity * light.color;
-    if (light.type == gltf::Light::Type::Directional || !(glm::dot(power, power) > 0.0f)) continue;
-    moment.lamps.push_back({n, groupRootOf(scene_, n), light.range_m, glm::vec3(world[n][3])});
-  }
-  return moment;
-}
-
-std::string Motion::lampName(const Lamp& lamp) const {
-  const std::string& name = scene_.nodes[lamp.node].name;
-  return name.empty() ? fmt::format("the light of node {}", lamp.node) : "the light of " + name;
+  return moments;
 }
 
 namespace {
@@ -151,10 +146,8 @@ std::string ratioText(const std::string& what, float ratio) {
 
 std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::vector<RigidGroup>& groups,
                                                 const std::vector<PlannedNeighborhood>& neighborhoods) {
-  const Motion motion(scene, groups);
   std::vector<Choice> choices(groups.size());
-  for (int time = 0; time < motion.times(); ++time) {
-    const Moment moment = motion.at(time);
+  for (const Moment& moment : momentsOf(scene, groups)) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const Box& own = moment.bodies[g].all;
       const float half = own.halfSize();
@@ -166,7 +159,9 @@ std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::v
       for (const Lamp& lamp : moment.lamps) {
         const float distance = glm::distance(lamp.place, own.centre());
         if (lamp.root == groups[g].root || (lamp.range_m > 0.0f && distance > lamp.range_m + half)) continue;
-        askBy(distance, kMostLightProbes, motion.lampName(lamp));
+        const std::string& name = scene.nodes[lamp.node].name;
+        askBy(distance, kMostLightProbes,
+              name.empty() ? fmt::format("the light of node {}", lamp.node) : "the light of " + name);
       }
       for (std::size_t other = 0; other < groups.size(); ++other) {
         const PlacedBody& body = moment.bodies[other];

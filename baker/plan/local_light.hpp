@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -64,25 +63,8 @@ struct Moment {
   std::vector<glm::mat4> world;  // world_from_node
 };
 
-class Motion {
- public:
-  // Both arguments must outlive this object.
-  Motion(const Scene& scene, const std::vector<RigidGroup>& groups);
-
-  int times() const;
-  // Time 0 is at rest; the others follow along the animations.
-  Moment at(int time) const;
-  std::string lampName(const Lamp& lamp) const;
-
- private:
-  const Scene& scene_;
-  const std::vector<RigidGroup>& groups_;
-  std::vector<std::vector<std::vector<glm::vec3>>> points_;  // by mesh and primitive
-  std::vector<std::set<std::int32_t>> shining_;              // emissive materials, by group
-  float duration_s_ = 0.0f;
-};
-
-// Goes through the triangles of a mesh where a node places them.
+// Returns the state at rest and, if there are animations, at 64 times along them.
+std::vector<Moment> momentsOf(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 // Calls tell(corners) with each triangle, moved by the matrix. Vertices are moved once, since triangles share
 // them.

@@ -102,9 +102,7 @@ void addWithin(const std::array<glm::vec3, 3>& triangle, const Triangles& of, bo
 class Planner {
  public:
   Planner(const Scene& scene, const std::vector<RigidGroup>& groups)
-      : scene_(scene), groups_(groups), motion_(scene, groups), plans_(groups.size()) {
-    for (int time = 0; time < motion_.times(); ++time) moments_.push_back(motion_.at(time));
-  }
+      : scene_(scene), groups_(groups), moments_(momentsOf(scene, groups)), plans_(groups.size()) {}
 
   std::vector<PlannedNeighborhood> plan() {
     takeRequests();
@@ -363,7 +361,6 @@ class Planner {
 
   const Scene& scene_;
   const std::vector<RigidGroup>& groups_;
-  Motion motion_;
   std::vector<Moment> moments_;
   std::vector<PlannedNeighborhood> plans_;
 };

@@ -10,9 +10,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/proxy/shine.hpp"
-#include "baker/proxy/simplify.hpp"
-
 namespace lambent::baker {
 
 namespace {

@@ -1,5 +1,3 @@
-#include "baker/proxy/shine.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,21 +10,16 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/light_probes/light_probes.hpp"
+#include "baker/proxy/capture_proxy.hpp"
 
 namespace lambent::baker {
-
-float triangleArea(const GroupGeometry& geometry, std::uint32_t triangle) {
-  const glm::uvec3 t = geometry.triangles[triangle];
-  const glm::vec3 a = geometry.positions[t.x], b = geometry.positions[t.y], c = geometry.positions[t.z];
-  return 0.5f * glm::length(glm::cross(b - a, c - a));
-}
 
 std::vector<SurfacePoint> pointsOn(const GroupGeometry& geometry, std::span<const std::uint32_t> triangles,
                                    std::size_t count) {
   std::vector<double> sums;
   double sum = 0.0;
   for (const std::uint32_t triangle : triangles)
-    sums.push_back(sum += double{triangleArea(geometry, triangle)});
+    sums.push_back(sum += triangleArea(geometry, geometry.triangles[triangle]));
   std::vector<SurfacePoint> points;
   if (!(sum > 0.0) || !std::isfinite(sum)) return points;
   const double step = sum / static_cast<double>(count);
@@ -74,7 +67,8 @@ void append(const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& 
 
 float partArea(const GroupGeometry& geometry, const ProxyPart& part) {
   float sum = 0.0f;
-  for (const std::uint32_t triangle : part.front) sum += triangleArea(geometry, triangle);
+  for (const std::uint32_t triangle : part.front)
+    sum += static_cast<float>(triangleArea(geometry, geometry.triangles[triangle]));
   return sum;
 }
 

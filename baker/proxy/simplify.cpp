@@ -1,17 +1,16 @@
-#include "baker/proxy/simplify.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <meshoptimizer.h>
+
+#include "baker/proxy/capture_proxy.hpp"
 
 namespace lambent::baker {
 
@@ -24,17 +23,8 @@ using Indices = std::vector<unsigned int>;
 
 // Corners of faces that meet may differ in their last bits after a rotation, so they count as the same if
 // they round to the same point of a fine lattice.
-using LatticePoint = std::array<std::int64_t, 3>;
+using LatticePoint = glm::ivec3;
 constexpr float kLattice = 0x1p-18f;  // of the surface's size; the step is up to twice as large
-
-struct LatticeHash {
-  std::size_t operator()(const LatticePoint& point) const {
-    std::uint64_t hash = 0x9E3779B97F4A7C15u;
-    for (const std::int64_t n : point)
-      hash = (hash ^ static_cast<std::uint64_t>(n)) * 0xD6E8FEB86659FD93u, hash ^= hash >> 32;
-    return hash;
-  }
-};
 
 // Drops triangles without area and vertices without a triangle.
 SimpleMesh compacted(const std::vector<glm::vec3>& positions, const Indices& indices, float error_m) {
@@ -114,19 +104,16 @@ SimpleMesh welded(const GroupGeometry& geometry, std::span<const std::uint32_t> 
   // The step is a power of two, so that points on the lattice that ships lie on this one too.
   const double step = std::exp2(
       std::ceil(std::log2(std::max(double{kLattice} * double{std::max({size.x, size.y, size.z})}, 1e-30))));
-  std::unordered_map<LatticePoint, unsigned int, LatticeHash> seen;
-  std::vector<glm::vec3> positions;
-  Indices indices;
-  indices.reserve(3 * triangles.size());
+  const auto rounded = [&](const glm::vec3& p) { return glm::round(glm::dvec3(p) / step); };
+  std::vector<LatticePoint> points;
+  points.reserve(3 * triangles.size());
   for (const std::uint32_t triangle : triangles)
-    for (int c = 0; c < 3; ++c) {
-      const glm::vec3 p = corner(triangle, c);
-      const glm::dvec3 n = glm::round(glm::dvec3(p) / step);
-      const LatticePoint point = {std::llround(n.x), std::llround(n.y), std::llround(n.z)};
-      const auto [entry, is_new] = seen.try_emplace(point, static_cast<unsigned int>(positions.size()));
-      if (is_new) positions.push_back(p);
-      indices.push_back(entry->second);
-    }
+    for (int c = 0; c < 3; ++c) points.emplace_back(rounded(corner(triangle, c)) - rounded(low));
+  Indices indices(points.size());
+  std::vector<glm::vec3> positions(meshopt_generateVertexRemap(
+      indices.data(), nullptr, points.size(), points.data(), points.size(), sizeof(LatticePoint)));
+  for (std::size_t i = points.size(); i-- > 0;)  // so that the first of equal ones stays
+    positions[indices[i]] = corner(triangles[i / 3], static_cast<int>(i % 3));
   return compacted(positions, indices, 0.0f);
 }
 

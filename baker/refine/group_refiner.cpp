@@ -143,67 +143,29 @@ Key sceneKey(const RefineScene& from, const GroupGeometry& geometry, std::span<c
 
 }  // namespace
 
-struct GroupRefiner::SeenPlace {
-  FacePoint point;
-  std::uint32_t ray = 0, region = 0;
-  float share = 0.0f;
-};
-
-struct GroupRefiner::Whole {
-  Whole(const RefineScene& from, const GroupGeometry& of, std::vector<PlannedLight> planned, RayScene traced,
-        std::vector<Eye> cameras)
-      : refined(from),
-        geometry(of),
-        lights(std::move(planned)),
-        rays(std::move(traced)),
-        importance(geometry, rays, std::move(cameras)) {}
-
-  const RefineScene& refined;
-  GroupGeometry geometry;
-  std::vector<PlannedLight> lights;
-  RayScene rays;
-  Importance importance;
-  // Shares at which other surfaces cut edges of the geometry as it is now.
-  std::vector<float> cutsOf(const GroupGeometry& now, std::span<const FaceEdge> edges, float longest) const {
-    return cutShares(geometry, rays, importance.extent(), now, edges, longest);
-  }
-  Result<SurfaceColors> colors;
-  std::optional<SurfaceLight> light;
-  std::vector<SeenPlace> seen;
-  Key key;
-};
-
-GroupRefiner::GroupRefiner(const ShadowProbe& few, const ShadowProbe& many, bool with_glossy)
-    : few_(few), many_(many), with_glossy_(with_glossy) {}
-GroupRefiner::GroupRefiner(GroupRefiner&&) noexcept = default;
-GroupRefiner::~GroupRefiner() = default;
-
-Result<void> GroupRefiner::prepare(const RefineScene& from, std::size_t group,
-                                   const GroupGeometry& geometry) {
-  auto rays = RayScene::build(geometry, from.scene, from.images);
+Result<void> GroupRefiner::prepare(const RigidGroup& group) {
+  auto rays = RayScene::build(geometry_, from_.scene, from_.images);
   if (!rays) return failAgain(rays.error());
-  const std::vector<Eye> cameras = cameraEyes(from.scene, from.groups[group], geometry);
-  whole_ = std::make_unique<Whole>(from, geometry, findGroupLights(from.scene, from.groups[group]),
-                                   std::move(*rays), cameras);
-  Whole& whole = *whole_;
-  whole.colors = SurfaceColors::load(from.scene, whole.geometry, whole.lights, from.images);
-  if (!whole.colors) return failAgain(whole.colors.error());
-  whole.light.emplace(from.scene, whole.geometry, whole.rays, *whole.colors, whole.lights, whole.importance,
-                      few_.shadowProbe());
-  whole.key = sceneKey(from, geometry, whole.lights, cameras);
-  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, whole.geometry, whole.rays)) {
+  rays_.emplace(std::move(*rays));
+  const std::vector<Eye> cameras = cameraEyes(from_.scene, group, geometry_);
+  lights_ = findGroupLights(from_.scene, group);
+  importance_ = Importance(geometry_, *rays_, cameras);
+  auto colors = SurfaceColors::load(from_.scene, geometry_, lights_, from_.images);
+  if (!colors) return failAgain(colors.error());
+  colors_.emplace(std::move(*colors));
+  light_.emplace(from_.scene, geometry_, *rays_, *colors_, lights_, importance_, few_.shadowProbe());
+  key_ = sceneKey(from_, geometry_, lights_, cameras);
+  for (const SeenPoint& seen : importance_.look(kSeenPlaces, geometry_, *rays_)) {
     const glm::vec3 weights(1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v);
-    whole.seen.push_back({facePoint(whole.geometry, whole.geometry.triangles[seen.hit.triangle], weights),
-                          seen.ray, static_cast<std::uint32_t>(whole.importance.regions().at(seen.position)),
-                          seen.share});
+    seen_.push_back({facePoint(geometry_, geometry_.triangles[seen.hit.triangle], weights), seen.ray,
+                     static_cast<std::uint32_t>(importance_.regions().at(seen.position)), seen.share});
   }
   return {};
 }
 
 float GroupRefiner::seenAt(const FacePoint& point) {
   const auto [entry, is_new] = seen_at_.try_emplace(vertexKey(point.position, point.normal, {}), 0.0f);
-  if (is_new)
-    entry->second = whole_->importance.at({point.origin.position, point.origin.geometric_normal}).seen;
+  if (is_new) entry->second = importance_.at({point.origin.position, point.origin.geometric_normal}).seen;
   return entry->second;
 }
 
@@ -216,7 +178,7 @@ void GroupRefiner::addEvenly(const GroupGeometry& geometry, std::uint32_t t, int
   for (const glm::vec3& weights : points) {
     Inner inner{.triangle = t, .weights = weights, .point = facePoint(geometry, corners, weights)};
     inner.share = area * seenAt(inner.point);
-    inner.region = static_cast<std::uint32_t>(whole_->importance.regions().at(inner.point.position));
+    inner.region = static_cast<std::uint32_t>(importance_.regions().at(inner.point.position));
     share += inner.share;
     if (inner.share > 0.0f) inner_.push_back(inner);
   }
@@ -224,22 +186,21 @@ void GroupRefiner::addEvenly(const GroupGeometry& geometry, std::uint32_t t, int
 }
 
 Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
-  const Whole& whole = *whole_;
   inner_.clear(), parts_.clear();
   // Rays of eyes find the triangles that lie at the seen places now. Splits only add triangles, so that a
   // group with as many as before any split is the same.
   std::optional<RayScene> split;
-  if (geometry.triangles.size() != whole.geometry.triangles.size()) {
-    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.images);
+  if (geometry.triangles.size() != geometry_.triangles.size()) {
+    auto built = RayScene::build(geometry, from_.scene, from_.images);
     if (!built) return failAgain(built.error());
     split = std::move(*built);
   }
-  const RayScene& now = split ? *split : whole.rays;
+  const RayScene& now = split ? *split : *rays_;
   std::vector<std::vector<Inner>> seen_in(geometry.triangles.size());
-  auto place = whole.seen.begin();
-  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, geometry, now)) {
-    while (place != whole.seen.end() && place->ray < seen.ray) ++place;
-    if (place == whole.seen.end() || place->ray != seen.ray) continue;
+  auto place = seen_.begin();
+  for (const SeenPoint& seen : importance_.look(kSeenPlaces, geometry, now)) {
+    while (place != seen_.end() && place->ray < seen.ray) ++place;
+    if (place == seen_.end() || place->ray != seen.ray) continue;
     seen_in[seen.hit.triangle].push_back({seen.hit.triangle,
                                           place->region,
                                           {1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v},
@@ -252,7 +213,7 @@ Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
       const glm::uvec3 corners = geometry.triangles[t];
       const double area = triangleArea(geometry, corners);
       if (!(area > 0.0)) continue;
-      const float spacing = kProbeSpacing * whole.importance.extent();
+      const float spacing = kProbeSpacing * importance_.extent();
       const int along = std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / spacing)), 1,
                                    kMostProbesAlong);
       if (seen_in[t].size() > static_cast<std::size_t>(along * along)) {
@@ -261,7 +222,7 @@ Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
       }
       const FacePoint middle = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
       const double most =
-          area * double{whole.importance.mostSeen({middle.origin.position, middle.origin.geometric_normal})};
+          area * double{importance_.mostSeen({middle.origin.position, middle.origin.geometric_normal})};
       if (along == 1 && most < kLeastShare) continue;
       addEvenly(geometry, t, along);
     }
@@ -285,7 +246,7 @@ std::vector<std::uint32_t> GroupRefiner::seenTriangles() const {
 }
 
 GroupRefiner::RegionSums GroupRefiner::sumRegions() const {
-  const std::size_t count = whole_ ? whole_->importance.regions().size() : 0;
+  const std::size_t count = importance_.regions().size();
   RegionSums sums{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   for (const Part& part : parts_) {
     sums.square_error[part.region] += part.square_error;
@@ -345,7 +306,7 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
     if (const Inner& inner = inner_[i]; listed(inner.triangle))
       number[i] = points.numberOf(inner.point.position, inner.point.normal, kindOf(inner.triangle),
                                   std::span(&inner.point.origin, 1));
-  if (!points.probe({whole_->key, whole_->rays, *whole_->light}, context)) return false;
+  if (!points.probe(key_, *rays_, *light_, context)) return false;
 
   const ShadowProbe& probe = points.shadowProbe();
   std::vector<PointError> error_at(inner_.size());
@@ -377,7 +338,7 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
     const HiddenFrom truth{points.masksAt(number[i]), inner.point.normal};
     const SampleKind kind = kindOf(inner.triangle);
     const auto wrong = probe.difference(corners, truth, kind);
-    error_at[i] = pointError(wrong, probe.arriving(truth, kind), wrongly, sent, *whole_->light);
+    error_at[i] = pointError(wrong, probe.arriving(truth, kind), wrongly, sent, *light_);
     if (kind == SampleKind::Glossy) {
       error_at[i].square *= square(kGlossyCounts);
       error_at[i].with_noise *= square(kGlossyCounts);
@@ -435,7 +396,8 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
     }
   }
   // Longer edges are halved: light changes on both sides of a cut, too.
-  const std::vector<float> cuts = whole_->cutsOf(geometry, marked, kLongestCut * whole_->importance.extent());
+  const std::vector<float> cuts = cutShares(geometry_, *rays_, importance_.extent(), geometry, marked,
+                                            kLongestCut * importance_.extent());
   for (std::size_t i = 0; i < marked.size(); ++i)
     if (cuts[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, cuts[i]);
   return marked.size();
@@ -448,7 +410,7 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
   const std::vector<SampleKind> kinds = kindsOf(samples);
   const std::vector<std::uint32_t> probed = seenTriangles();
   const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, probed);
-  if (!few_.probe({whole_->key, whole_->rays, *whole_->light}, context)) return std::nullopt;
+  if (!few_.probe(key_, *rays_, *light_, context)) return std::nullopt;
   std::vector<float> light(samples.size(), 0.0f);
   std::vector<std::uint8_t> seen(samples.size(), 0);
   const auto lightAt = [&](std::size_t s) {
@@ -463,7 +425,7 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
       });
   if (!done) return std::nullopt;
   lightUnseen(geometry, samples, probed, seen, light);
-  const float least = kLightShare * whole_->light->meanSky();
+  const float least = kLightShare * light_->meanSky();
   std::vector<FaceEdge> between;
   std::set<std::pair<std::uint32_t, std::uint32_t>> met;
   for (const std::uint32_t t : probed)
@@ -475,7 +437,8 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
           met.emplace(std::minmax(dark, lit)).second)
         between.push_back({dark, lit, t});
     }
-  const std::vector<float> cuts = whole_->cutsOf(geometry, between, std::numeric_limits<float>::max());
+  const std::vector<float> cuts = cutShares(geometry_, *rays_, importance_.extent(), geometry, between,
+                                            std::numeric_limits<float>::max());
   std::size_t marked = 0;
   for (std::size_t i = 0; i < between.size() && room > 0; ++i) {
     if (cuts[i] == 0.0f) continue;

@@ -128,13 +128,6 @@ class SurfaceLight {
 
 inline constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
 
-// A ProbedScene is the group before any split, as points see it.
-struct ProbedScene {
-  Key key;
-  const RayScene& rays;
-  const SurfaceLight& light;
-};
-
 // Remembers what a group's points were found to be hidden from, and what light surfaces send them, over all
 // rounds of refinement. Triangles change between rounds, but surfaces stay in place, so that most points are
 // known already.
@@ -148,8 +141,10 @@ class ProbedPoints {
   // Returns the number of a point. New points must be probed before they are asked about.
   std::uint32_t numberOf(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                          std::span<const SampleOrigin> origins);
-  // Traces rays from all new points. Returns false when stopped.
-  bool probe(const ProbedScene& scene, const BakeContext& context);
+  // Traces rays from all new points through the group before any split, whose key this is. Returns false when
+  // stopped.
+  bool probe(const Key& scene_key, const RayScene& rays, const SurfaceLight& light,
+             const BakeContext& context);
 
   std::span<const std::uint16_t> masksAt(std::uint32_t point) const {
     return std::span(masks_).subspan(point * probe_->packets(), probe_->packets());
@@ -246,20 +241,21 @@ class GroupRefiner {
   // that it makes look worst are split and those that it makes look right stay, so that in the end the figure
   // is under the bound and the error is not. Many rays therefore probe again before anything is split. Glossy
   // surfaces are not probed again: their pictures gain nothing from it, and their probes cost most.
-  // The probes outlive this. Glossy surfaces are refined `with_glossy` alone.
-  GroupRefiner(const ShadowProbe& few, const ShadowProbe& many, bool with_glossy);
-  GroupRefiner(GroupRefiner&&) noexcept;
-  ~GroupRefiner();
+  // The scene and the probes outlive this. The geometry is that before any split: rays are traced against it
+  // in all rounds. Glossy surfaces are refined `with_glossy` alone.
+  GroupRefiner(const RefineScene& from, const GroupGeometry& geometry, const ShadowProbe& few,
+               const ShadowProbe& many, bool with_glossy)
+      : from_(from), geometry_(geometry), few_(few), many_(many), with_glossy_(with_glossy) {}
+  GroupRefiner(const GroupRefiner&) = delete;
+  GroupRefiner& operator=(const GroupRefiner&) = delete;
 
-  // Everything that `from` refers to outlives this. The geometry is that before any split: rays are traced
-  // against it in all rounds. Errors: no memory for the hierarchy, images that cannot be decoded.
-  Result<void> prepare(const RefineScene& from, std::size_t group, const GroupGeometry& geometry);
+  // Comes before all else. Errors: no memory for the hierarchy, images that cannot be decoded.
+  Result<void> prepare(const RigidGroup& group);
 
   // Measures the relative error of every triangle that eyes see, by many rays where it could matter for
   // `bound`. Errors: no memory for the hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, double bound, const BakeContext& context);
 
-  bool measured() const { return whole_ != nullptr; }
   // Returns the RMS of what interpolation gets wrong at a point, relative to the light that arrives there, in
   // all but the worst 5 % of the regions that eyes see.
   double relativeError() const;
@@ -278,9 +274,12 @@ class GroupRefiner {
                                        MarkedEdges& edges, const BakeContext& context);
 
  private:
-  struct Whole;      // the group before any split
-  struct SeenPlace;  // a point of it that an eye sees
-  struct Inner {     // a point inside a triangle
+  struct SeenPlace {  // a point of the group before any split that an eye sees
+    FacePoint point;
+    std::uint32_t ray = 0, region = 0;
+    float share = 0.0f;
+  };
+  struct Inner {  // a point inside a triangle
     std::uint32_t triangle = 0, region = 0;
     glm::vec3 weights{0.0f};  // of the corners
     FacePoint point;
@@ -315,9 +314,17 @@ class GroupRefiner {
   };
   RegionSums sumRegions() const;
 
+  const RefineScene& from_;
+  const GroupGeometry geometry_;  // this and what follows are of the group before any split
+  std::vector<PlannedLight> lights_;
+  std::optional<RayScene> rays_;
+  Importance importance_;
+  std::optional<SurfaceColors> colors_;
+  std::optional<SurfaceLight> light_;
+  std::vector<SeenPlace> seen_;
+  Key key_;
   ProbedPoints few_, many_;
   bool with_glossy_;
-  std::unique_ptr<Whole> whole_;
   std::unordered_map<VertexKey, float, VertexKeyHash> seen_at_;  // of the points of all rounds
   bool chosen_ = false;       // triangles were marked, so that few rays are no longer right on average
   std::vector<Inner> inner_;  // by triangle, and then by region

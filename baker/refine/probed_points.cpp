@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/transport/geometry_key.hpp"
@@ -315,7 +315,8 @@ std::uint32_t ProbedPoints::numberOf(const glm::vec3& position, const glm::vec3&
   return entry->second;
 }
 
-bool ProbedPoints::probe(const ProbedScene& scene, const BakeContext& context) {
+bool ProbedPoints::probe(const Key& scene_key, const RayScene& rays, const SurfaceLight& light,
+                         const BakeContext& context) {
   const std::vector<Point> points = std::exchange(missing_, {});
   if (points.empty()) return true;
   const std::size_t size = probe_->packets(), first = seen_.size();
@@ -327,8 +328,8 @@ bool ProbedPoints::probe(const ProbedScene& scene, const BakeContext& context) {
     for (std::size_t i = begin; i < end; ++i) {
       const Point& point = points[i];
       seen_[first + i] =
-          probe_->look(scene.rays, point.origins, point.normal, point.kind, masks.subspan(i * size, size));
-      if (seen_[first + i] != 0) light_[first + i] = scene.light.at(point.origins, point.normal);
+          probe_->look(rays, point.origins, point.normal, point.kind, masks.subspan(i * size, size));
+      if (seen_[first + i] != 0) light_[first + i] = light.at(point.origins, point.normal);
     }
   };
   const auto begin = static_cast<std::ptrdiff_t>(first);
@@ -338,7 +339,7 @@ bool ProbedPoints::probe(const ProbedScene& scene, const BakeContext& context) {
                     .compute = compute,
                     .keep = KeepWhen::Always};
   KeyMaker key;
-  key.add(scene.key).add(std::uint64_t{probe_->rays()});
+  key.add(scene_key).add(std::uint64_t{probe_->rays()});
   for (const Point& point : points) key.add(point.normal).add(point.kind).addList(point.origins);
   const auto done = runStage(stage, context.keyed(key.key()));
   if (!done) return false;

@@ -1,5 +1,3 @@
-#include "baker/sweep/knobs.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -8,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "baker/bake/options.hpp"
+#include "baker/sweep/sweep.hpp"
 
 namespace lambent::baker {
 

@@ -1,15 +1,15 @@
-#include "baker/sweep/measure.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "baker/accuracy/compare.hpp"
 #include "baker/cache/key.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/rec709.hpp"
@@ -37,6 +37,8 @@ Result<void> readReport(const Result<Ran>& ran, const char* program, Read&& read
   return {};
 }
 
+using NamedTimes = std::vector<std::pair<std::string, double>>;  // in the order in which they came
+
 NamedTimes stagesOf(const json& report) {
   NamedTimes times;
   for (const json& stage : report.at("stages")) {
@@ -50,9 +52,10 @@ NamedTimes stagesOf(const json& report) {
   return times;
 }
 
-ErrorParts errorPartsOf(const json& report) {
-  ErrorParts parts;
-  double points = 0.0;
+// Returns what the bake says of its own error (picture_error.hpp): the RMS over groups by their points. All
+// are 0 if there are no diffuse surfaces.
+json errorPartsOf(const json& report) {
+  double noise = 0.0, codes = 0.0, interpolation = 0.0, points = 0.0;
   for (const json& group : report.at("groups")) {
     const json& error = group.at("pictureError");
     if (error.is_null()) continue;
@@ -61,14 +64,14 @@ ErrorParts errorPartsOf(const json& report) {
       const double value = error.at(name).get<double>();
       part += count * value * value;
     };
-    add(parts.noise, "samples");
-    add(parts.codes, "codes");
-    add(parts.interpolation, "interpolation");
+    add(noise, "samples");
+    add(codes, "codes");
+    add(interpolation, "interpolation");
     points += count;
   }
-  for (double* part : {&parts.noise, &parts.codes, &parts.interpolation})
+  for (double* part : {&noise, &codes, &interpolation})
     *part = points > 0.0 ? std::sqrt(*part / points) : 0.0;
-  return parts;
+  return {{"noise", noise}, {"codes", codes}, {"interpolation", interpolation}};
 }
 
 // Returns the factor that brings the mean luminance of what the picture covers to a third of white. With one
@@ -102,22 +105,58 @@ void append(std::vector<std::string>& words, const std::map<std::string, std::st
   }
 }
 
-Result<Figures> figuresOf(const std::filesystem::path& file, const Measurer::Reference& reference,
-                          const std::string& subject) {
+// Returns how far a picture is from the reference.
+Result<json> figuresOf(const std::filesystem::path& file, const Measurer::Reference& reference,
+                       const std::string& subject) {
   const auto picture = spec::readExr(file);
   if (!picture) return failAgain(picture.error());
   const auto error = comparePictures(*picture, reference.a, &reference.b, subject);
   if (!error) return failAgain(error.error());
-  Figures figures{.rms = error->relative_rms,
-                  .percentile_99 = error->percentile_99,
-                  .bias = *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); })};
   // d(e) = d(e²) / 2e, but never more than what all of e² drowning in noise would mean.
   const double of_square = error->relative_square_error;
-  figures.rms_spread = std::min(std::sqrt(of_square), of_square / (2.0 * std::max(figures.rms, 1e-9)));
-  return figures;
+  const double spread =
+      std::min(std::sqrt(of_square), of_square / (2.0 * std::max(error->relative_rms, 1e-9)));
+  return json{{"rms", error->relative_rms},
+              {"rmsSpread", spread},  // the standard error of rms, by the noise of the references
+              {"percentile99", error->percentile_99},
+              {"bias", *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); })}};
 }
 
 }  // namespace
+
+Result<Store> Store::open(const std::filesystem::path& file) {
+  Store store(file);
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return store;
+  const Result<std::string> text = readTextFile(file);
+  if (!text) return failAgain(text.error());
+  store.cut_short_ = !text->empty() && text->back() != '\n';
+  std::istringstream lines(*text);
+  for (std::string words; std::getline(lines, words);) {
+    json line = json::parse(words, nullptr, /*exceptions=*/false);
+    if (line.is_object() && line.contains("key") && line["key"].is_string() && line.contains("row"))
+      store.rows_.insert_or_assign(line["key"].get<std::string>(), std::move(line["row"]));
+  }
+  return store;
+}
+
+const json* Store::find(const std::string& key) const {
+  const auto found = rows_.find(key);
+  return found == rows_.end() ? nullptr : &found->second;
+}
+
+Result<void> Store::add(const std::string& key, const std::string& what, json row) {
+  const json line = {{"key", key}, {"what", what}, {"row", row}};
+  std::ofstream out(file_, std::ios::app);
+  if (cut_short_) out << '\n';
+  out << line.dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
+  out.close();
+  if (!out) return fail(file_.string(), "cannot be written", "see that its folder is there and not full");
+  cut_short_ = false;
+  rows_.insert_or_assign(key, std::move(row));
+  ++added_;
+  return {};
+}
 
 Measurer::Measurer(Job job, Store& store, std::stop_token stop)
     : job_(std::move(job)), store_(store), stop_(std::move(stop)) {
@@ -159,27 +198,25 @@ std::vector<std::string> Measurer::viewWords() const {
   return words;
 }
 
-template <Row R, typename Make>
-Result<R> Measurer::known(const std::string& key, const std::string& what, const std::filesystem::path& file,
-                          Make&& make) {
-  if (auto row = store_.find<R>(key); row && (file.empty() || std::filesystem::exists(file))) return *row;
+Result<json> Measurer::known(const std::string& key, const std::string& what,
+                             const std::filesystem::path& file, const std::function<Result<json>()>& make) {
+  if (const json* row = store_.find(key); row && (file.empty() || std::filesystem::exists(file))) return *row;
   job_.begin(what);
-  Result<R> row = make();
+  Result<json> row = make();
   if (!row) return row;
   if (auto added = store_.add(key, what, *row); !added) return failAgain(added.error());
   return row;
 }
 
-Result<ReferenceRow> Measurer::runReference(const std::string& bands, int seed,
-                                            const std::filesystem::path& file) {
+Result<json> Measurer::runReference(const std::string& bands, int seed, const std::filesystem::path& file) {
   std::vector<std::string> words = viewWords();
   words.insert(words.begin(), {"reference", job_.scene.string(), "-o", file.string(), "--json", "--spp",
                                std::to_string(job_.view.spp), "--seed", std::to_string(seed)});
   if (!bands.empty()) words.insert(words.end(), {"--band-limit", bands});
   if (job_.allow_outside) words.push_back("--allow-outside");
-  ReferenceRow row;
+  json row;
   const auto read = readReport(runProgram(job_.programs.lambent, words, stop_), "lambent reference",
-                               [&](const json& report) { row.seconds = report.at("seconds").get<double>(); });
+                               [&](const json& report) { row["seconds"] = report.at("seconds"); });
   if (!read) return failAgain(read.error());
   return row;
 }
@@ -192,13 +229,12 @@ Result<const Measurer::Reference*> Measurer::reference(const std::string& bands)
     const std::filesystem::path file = job_.work / fmt::format("reference-{}.exr", shortened(row_key));
     const std::string what = fmt::format(
         "reference {}, seed {}", bands.empty() ? "of light as it is" : "of " + bands + " bands", seed);
-    const auto row =
-        known<ReferenceRow>(row_key, what, file, [&] { return runReference(bands, seed, file); });
+    const auto row = known(row_key, what, file, [&] { return runReference(bands, seed, file); });
     if (!row) return failAgain(row.error());
     auto picture = spec::readExr(file);
     if (!picture) return failAgain(picture.error());
     (seed == 1 ? reference.a : reference.b) = std::move(*picture);
-    reference.seconds += row->seconds;
+    reference.seconds += row->at("seconds").get<double>();
   }
   spec::RgbaImage mean = reference.a;
   for (std::size_t i = 0; i < mean.texels.size(); ++i)
@@ -208,7 +244,7 @@ Result<const Measurer::Reference*> Measurer::reference(const std::string& bands)
   return &references_.emplace(bands, std::move(reference)).first->second;
 }
 
-Result<BakeRow> Measurer::runBake(const Setting& setting) {
+Result<json> Measurer::runBake(const Setting& setting) {
   std::vector<std::string> words = {"bake",      job_.scene.string(),
                                     "-o",        bundleOf(setting).string(),
                                     "--json",    "--force",
@@ -216,31 +252,37 @@ Result<BakeRow> Measurer::runBake(const Setting& setting) {
                                     "--quality", qualityName(setting.bake.quality)};
   append(words, setting.bake_words);
   if (job_.allow_outside) words.push_back("--allow-outside");
-  std::vector<BakeRow> runs;
+  std::vector<json> runs;
   for (double spent = 0.0; runs.size() < kMostRuns && (runs.empty() || spent < kRepeatWithinSeconds);) {
     const auto ran = runProgram(job_.programs.lambent, words, stop_);
-    BakeRow run;
+    json run;
     const auto read = readReport(ran, "lambent bake", [&](const json& report) {
-      run = {.processor_seconds = ran->processor_seconds,
-             .stages = stagesOf(report),
-             .bytes = report.at("fileBytes").get<std::uint64_t>(),
-             .transfer_bytes = report.at("transferBytes").get<std::uint64_t>(),
-             .vertices = report.at("vertices").get<std::uint64_t>(),
-             .parts = errorPartsOf(report)};
+      const NamedTimes stages = stagesOf(report);
+      double seconds = 0.0;
+      for (const auto& [stage, taken] : stages) seconds += taken;
+      spent += seconds;
+      run = {{"seconds", seconds},
+             {"processorSeconds", ran->processor_seconds},
+             {"stages", stages},
+             {"bytes", report.at("fileBytes")},
+             {"transferBytes", report.at("transferBytes")},
+             {"vertices", report.at("vertices")},
+             {"parts", errorPartsOf(report)}};
     });
     if (!read) return failAgain(read.error());
-    for (const auto& [stage, seconds] : run.stages) run.seconds += seconds;
-    spent += run.seconds;
     runs.push_back(std::move(run));
   }
-  std::ranges::sort(runs, {}, &BakeRow::processor_seconds);
-  const double processor_seconds = runs[runs.size() / 2].processor_seconds;
-  std::ranges::sort(runs, {}, &BakeRow::seconds);
-  BakeRow row = runs[runs.size() / 2];
-  row.processor_seconds = processor_seconds;
-  row.runs = static_cast<int>(runs.size());
-  row.least_seconds = runs.front().seconds;
-  row.most_seconds = runs.back().seconds;
+  const auto sortBy = [&](const char* name) {
+    std::ranges::sort(runs, {}, [name](const json& run) { return run.at(name).get<double>(); });
+  };
+  sortBy("processorSeconds");
+  const json processor_seconds = runs[runs.size() / 2].at("processorSeconds");
+  sortBy("seconds");
+  json row = runs[runs.size() / 2];
+  row["processorSeconds"] = processor_seconds;
+  row["runs"] = runs.size();
+  row["leastSeconds"] = runs.front().at("seconds");
+  row["mostSeconds"] = runs.back().at("seconds");
   return row;
 }
 
@@ -273,7 +315,7 @@ Result<std::string> Measurer::memoryLimit(const Setting& setting, const std::fil
   return std::to_string(least + static_cast<std::uint64_t>(setting.memory_share * planes));
 }
 
-Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::filesystem::path& file) {
+Result<json> Measurer::drawPictures(const Setting& setting, const std::filesystem::path& file) {
   const auto as_light_is = reference("");
   if (!as_light_is) return failAgain(as_light_is.error());
   const auto of_bands =
@@ -287,27 +329,30 @@ Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::fil
     if (!limit) return failAgain(limit.error());
     words["max-memory"] = std::move(*limit);
   }
-  PictureRow row;
+  json row;
   const auto read =
       readReport(draw(setting, words, file, job_.view.frames), "lambent-demo", [&](const json& report) {
-        row.frame_ms = report.at("frame_ms").at("median").get<double>();
-        row.slowest_ms = report.at("frame_ms").at("max").get<double>();
-        row.processor_ms = report.at("frame_processor_ms").get<double>();
-        row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
+        NamedTimes passes;
         for (const json& pass : report.at("last_frame").at("passes")) {
           const json& gpu = pass.at("gpu_ms");
-          row.passes.emplace_back(pass.at("name").get<std::string>(),
-                                  gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
+          passes.emplace_back(pass.at("name").get<std::string>(),
+                              gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
         }
-        row.gpu_bytes = report.at("bytes_resident").get<std::uint64_t>() +
-                        report.at("key_shadow_bytes").get<std::uint64_t>();
-        row.key_lights = static_cast<int>(report.at("key_lights").size());
-        row.renderer = report.at("renderer").get<std::string>();
+        row = {
+            {"frameMs", report.at("frame_ms").at("median")},
+            {"slowestMs", report.at("frame_ms").at("max")},
+            {"processorMs", report.at("frame_processor_ms")},
+            {"frames", std::max(1, job_.view.frames - 1)},  // the first one also waits for what is made once
+            {"passes", passes},
+            {"gpuBytes", report.at("bytes_resident").get<std::uint64_t>() +
+                             report.at("key_shadow_bytes").get<std::uint64_t>()},
+            {"keyLights", report.at("key_lights").size()},
+            {"renderer", report.at("renderer")}};
       });
   if (!read) return failAgain(read.error());
   const auto lit = figuresOf(file, **as_light_is, setting.name());
   if (!lit) return failAgain(lit.error());
-  row.as_light_is = *lit;
+  row["asLightIs"] = *lit;
 
   // Only what bands carry: neither key lights nor mirrors of what the bands leave out.
   words.erase("quality");
@@ -316,20 +361,19 @@ Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::fil
   if (auto banded = draw(setting, words, other_file, 1); !banded) return failAgain(banded.error());
   const auto limited = figuresOf(other_file, **of_bands, setting.name());
   if (!limited) return failAgain(limited.error());
-  row.as_bands_can = *limited;
+  row["asBandsCan"] = *limited;
   return row;
 }
 
 Result<Measured> Measurer::measure(const Setting& setting) {
-  auto bake =
-      known<BakeRow>(bakeKey(setting), "bake " + setting.name(), {}, [&] { return runBake(setting); });
+  auto bake = known(bakeKey(setting), "bake " + setting.name(), {}, [&] { return runBake(setting); });
   if (!bake) return failAgain(bake.error());
   const auto as_light_is = reference("");
   if (!as_light_is) return failAgain(as_light_is.error());
   Measured measured{.setting = setting, .key = pictureKey(setting), .bake = std::move(*bake), .picture = {}};
   const std::filesystem::path file = job_.work / fmt::format("picture-{}.exr", shortened(measured.key));
-  auto row = known<PictureRow>(measured.key, "pictures of " + setting.name(), file,
-                               [&] { return drawPictures(setting, file); });
+  auto row =
+      known(measured.key, "pictures of " + setting.name(), file, [&] { return drawPictures(setting, file); });
   if (!row) return failAgain(row.error());
   measured.picture = std::move(*row);
   auto picture = spec::readExr(file);

@@ -1,5 +1,3 @@
-#include "baker/sweep/report.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "baker/import/openimageio/module.hpp"
 #include "baker/plan/counted.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "lambent_sweep_embedded.hpp"
 #include "runtime/base/atomic_file.hpp"
 
@@ -26,10 +25,10 @@ constexpr double kLeastGain = 0.1;
 
 // Returns the time that the frame costs: of the processor if it draws, where other work disturbs the clock.
 double frameSeconds(const Measured& m) {
-  const std::string& renderer = m.picture.renderer;
+  const auto renderer = m.picture.at("renderer").get<std::string>();
   const bool on_processor =
       renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
-  return 0.001 * (on_processor ? m.picture.processor_ms : m.picture.frame_ms);
+  return 0.001 * m.picture.at(on_processor ? "processorMs" : "frameMs").get<double>();
 }
 
 struct Cost {
@@ -44,13 +43,13 @@ struct Cost {
 
 constexpr std::array kCosts = {
     Cost{"bake-time", "processor time of a bake, all threads together", "time of a bake", "Bake with", "s",
-         Knob::Side::Bake, [](const Measured& m) { return m.bake.processor_seconds; }},
+         Knob::Side::Bake, [](const Measured& m) { return m.bake.at("processorSeconds").get<double>(); }},
     Cost{"frame-time", "time of a frame under turning light", "time of a frame", "Draw with", "s",
          Knob::Side::Frame, frameSeconds},
     Cost{"bundle-bytes", "bytes of the bundle", "bytes of the bundle", "Bake with", "B", Knob::Side::Bake,
-         [](const Measured& m) { return static_cast<double>(m.bake.bytes); }},
+         [](const Measured& m) { return m.bake.at("bytes").get<double>(); }},
     Cost{"gpu-bytes", "bytes on the GPU", "bytes on the GPU", "Draw with", "B", Knob::Side::Frame,
-         [](const Measured& m) { return static_cast<double>(m.picture.gpu_bytes); }}};
+         [](const Measured& m) { return m.picture.at("gpuBytes").get<double>(); }}};
 
 // Returns the quantity with three figures: "41 s", "312 kB".
 std::string quantityText(double value, const Cost& cost) {
@@ -93,8 +92,9 @@ json costJson(const Cost& cost, std::span<const Measured> settings) {
   const std::vector<std::size_t> list = competing(cost, settings);
   std::vector<CostAndError> points;
   for (const std::size_t i : list) {
-    const Figures& figures = settings[i].picture.as_light_is;
-    points.push_back({cost.of(settings[i]), figures.rms, figures.rms_spread});
+    const json& figures = settings[i].picture.at("asLightIs");
+    points.push_back(
+        {cost.of(settings[i]), figures.at("rms").get<double>(), figures.at("rmsSpread").get<double>()});
   }
   json out = {{"id", cost.id},          {"title", cost.title}, {"words", cost.words},
               {"unit", cost.unit},      {"competing", list},   {"values", json::array()},

@@ -114,7 +114,7 @@ Result<SweepResults> runSweep(SweepRequest request, const SweepListener& listene
     if (stop.stop_requested()) break;
     // The base comes to the same with any number of key lights if there are none to find.
     if (!results.settings.empty() && setting.isOfKeyLights() &&
-        results.settings.front().picture.key_lights == 0) {
+        results.settings.front().picture.at("keyLights") == 0) {
       --results.asked;
       continue;
     }

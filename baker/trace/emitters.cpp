@@ -155,9 +155,10 @@ void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin
     const float points_per_steradian =
         static_cast<float>(surface.points.size()) / surface.area * glm::dot(offset, offset) / facing;
     // Chosen points never reach the sample by way of the mirrored direction, so those rays count in full.
-    const float share = isAbove(straight, origin)
-                            ? 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian)
-                            : 1.0f;
+    const float share =
+        isAbove(straight, origin)
+            ? 1.0f - points_per_steradian / (points_per_steradian + receiver.raysPerSteradian(local.z))
+            : 1.0f;
     const glm::vec3 radiance = share * hit.passed * colors_.emission(hit.triangle, hit.u, hit.v);
     receiver.addAlong(hit.ray, light, radiance);
   }

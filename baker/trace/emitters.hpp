@@ -61,9 +61,6 @@ class Emitters {
   };
 
   void choosePoints(std::size_t count, Surface& surface, const std::vector<std::uint32_t>& triangles) const;
-  float chosenShare(float rays_per_steradian, float points_per_steradian) const {
-    return points_per_steradian / (points_per_steradian + rays_per_steradian);
-  }
 
   const GroupGeometry& geometry_;
   const SurfaceColors& colors_;

@@ -1,19 +1,13 @@
 #include "baker/trace/hits.hpp"
 
+#include "runtime/base/payload_bytes.hpp"
+
 namespace lambent::baker {
 
 namespace {
 
 // What panes pass of the light where there are none.
 constexpr std::uint16_t kAllPassed = 0xffff;
-
-// Maps small differences of either sign to small numbers.
-std::uint32_t zigzag(std::uint32_t difference) {
-  return difference << 1 ^ (difference >> 31 ? ~std::uint32_t{0} : 0);
-}
-std::uint32_t unzigzag(std::uint32_t code) {
-  return code >> 1 ^ (code & 1 ? ~std::uint32_t{0} : 0);
-}
 
 // Writes seven bits to a byte, the lowest first.
 void put(std::uint32_t value, std::vector<std::uint8_t>& out) {
@@ -40,8 +34,8 @@ void writeHits(const RangeHits& hits, ByteWriter& out) {
   places.reserve(2 * hits.hits.size());
   GatherHit last;
   for (const GatherHit& hit : hits.hits) {
-    put(zigzag(hit.ray - last.ray), numbers);
-    put(zigzag(hit.triangle - last.triangle), numbers);
+    put(zigzag(static_cast<std::int32_t>(hit.ray - last.ray)), numbers);
+    put(zigzag(static_cast<std::int32_t>(hit.triangle - last.triangle)), numbers);
     places.push_back(hit.u);
     places.push_back(hit.v);
     passed.insert(passed.end(), hit.albedo, hit.albedo + 3);
@@ -73,8 +67,8 @@ bool readHits(ByteReader& in, std::size_t samples, std::size_t triangle_count, R
   for (std::size_t i = 0; i < places.size(); i += 2) {
     std::uint32_t ray = 0, triangle = 0;
     if (!take(left, ray) || !take(left, triangle)) return false;
-    last = {.triangle = last.triangle + unzigzag(triangle),
-            .ray = last.ray + unzigzag(ray),
+    last = {.triangle = last.triangle + static_cast<std::uint32_t>(unzigzag(triangle)),
+            .ray = last.ray + static_cast<std::uint32_t>(unzigzag(ray)),
             .u = places[i],
             .v = places[i + 1],
             .albedo = {kAllPassed, kAllPassed, kAllPassed}};

@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 
 namespace lambent::baker {
 

@@ -186,7 +186,7 @@ bool PatchTransport::build(const VisitHits& visit, const BakeContext& context) {
   const std::size_t count = patches_.size();
   links_.assign(count * channels_ * count, 0.0f);
   const auto gather = [&](std::size_t patch) {
-    const std::span<float> links = row(patch);
+    float* const links = links_.data() + patch * channels_ * count;
     for (std::uint32_t i = patches_.offsets[patch]; i < patches_.offsets[patch + 1]; ++i) {
       const float share = patches_.shares[i];
       visit(patches_.samples[i], [&](const GatherHit& hit, float weight, const glm::vec3& albedo) {

@@ -95,10 +95,6 @@ class PatchTransport {
   TransferField bounce(const TransferField& before) const;
 
  private:
-  std::span<float> row(std::size_t patch) {
-    return std::span(links_).subspan(patch * channels_ * patches_.size(), channels_ * patches_.size());
-  }
-
   const Patches& patches_;
   SamplesOfHit corners_;
   std::size_t channels_;

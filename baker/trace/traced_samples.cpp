@@ -30,16 +30,16 @@ std::size_t raysOf(RayCount count, std::size_t usual) {
 
 void SampleVisibility::stand(std::size_t s) {
   ray_count_ = RayCount::Usual;
-  frame_ = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
-  if (!shadows_) {
-    const auto origins = samples_.originsOf(s);
+  frame_ = localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[s])));
+  if (!scene_.shadows) {
+    const auto origins = scene_.samples.originsOf(s);
     seen_.origins.assign(origins.begin(), origins.end());
     seen_.valid = !origins.empty();
     return;
   }
-  findSeenOrigins(samples_.originsOf(s), glm::mat3(frame_), rays_, inside_test_, seen_);
+  findSeenOrigins(scene_.samples.originsOf(s), glm::mat3(frame_), scene_.rays, inside_test_, seen_);
   if (seen_.double_rays) ray_count_ = RayCount::Twice;
-  if (importance_ && !importance_->matters(s)) ray_count_ = RayCount::Few;
+  if (scene_.importance && !scene_.importance->matters(s)) ray_count_ = RayCount::Few;
 }
 
 std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hits, BelowHorizon below) {
@@ -48,14 +48,14 @@ std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hit
   blocked_.assign(table.packets(), 0);
   if (seen_.origins.empty()) return 0;
   const SampleRays rays{seen_.origins, glm::mat3(frame_), table, below};
-  if (!shadows_) {
+  if (!scene_.shadows) {
     blockBelowHorizons(rays, blocked_);
     return 0;
   }
-  const std::uint32_t traced = wants_hits
-                                   ? rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_)
-                                   : rays_.trace(rays, blocked_);
-  if (rays_.hasPanes()) lookThroughPanes(rays, rays_, colors_, blocked_, hits_, dimmed_);
+  const std::uint32_t traced =
+      wants_hits ? scene_.rays.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_)
+                 : scene_.rays.trace(rays, blocked_);
+  if (scene_.rays.hasPanes()) lookThroughPanes(rays, scene_.rays, scene_.colors, blocked_, hits_, dimmed_);
   return traced;
 }
 

@@ -65,12 +65,7 @@ class SampleVisibility {
  public:
   // Everything must outlive it. No rays are traced where the scene has no shadows.
   SampleVisibility(const TracedScene& scene, const InsideTestTables& glances)
-      : samples_(scene.samples),
-        importance_(scene.importance),
-        rays_(scene.rays),
-        colors_(scene.colors),
-        inside_test_(glances),
-        shadows_(scene.shadows) {}
+      : scene_(scene), inside_test_(glances) {}
 
   // Moves to sample `s`: finds its frame, the origins that lie outside, and how many rays to trace.
   void stand(std::size_t s);
@@ -95,12 +90,8 @@ class SampleVisibility {
   void keepHits(std::vector<GatherHit>& out) const;
 
  private:
-  const SampleSet& samples_;
-  const SampleImportance* importance_;
-  const RayScene& rays_;
-  const SurfaceColors& colors_;
+  const TracedScene scene_;
   const InsideTestTables& inside_test_;
-  bool shadows_;
   glm::dmat3 frame_{1.0};
   SeenOrigins seen_;
   RayCount ray_count_ = RayCount::Usual;

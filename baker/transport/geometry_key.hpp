@@ -10,7 +10,6 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/bytes.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/import/scene_digest.hpp"
 #include "baker/transport/group_geometry.hpp"

@@ -110,7 +110,6 @@ void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const 
     if (glm::cross(b - a, c - a) == glm::vec3(0.0f))
       continue;  // a triangle without area is no surface, and rays must not come to depend on it
     geometry.triangles.push_back(triangle);
-    geometry.mesh_faces.push_back(static_cast<std::uint32_t>(i / 3));
     ++out.triangle_count;
   }
   geometry.draws.push_back(out);

@@ -58,7 +58,6 @@ struct GroupGeometry {
   // with the last of them.
   std::vector<glm::vec2> chart_coordinates;
   std::vector<glm::uvec3> triangles;             // into positions; corners 1 and 2 are swapped for back draws
-  std::vector<std::uint32_t> mesh_faces;         // index of each triangle in its draw's mesh
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // relative to `origin`
 };

@@ -241,34 +241,13 @@ void blockBelowHorizons(const SampleRays& rays, std::span<std::uint16_t> masks) 
   }
 }
 
-std::uint32_t RayScene::trace(const SampleRays& rays, std::span<std::uint16_t> masks) const {
+std::uint32_t RayScene::walk(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
+                             std::vector<RayHit>* hits) const {
   assert(!rays.origins.empty() && masks.size() == rays.table.packets());
   const FlushDenormals flush;
   const OriginDealer dealer(rays.origins);
   Packet packet;
   // Embree's path for incoherent rays is the faster one for occlusion, although these rays are coherent.
-  RayQuery query(RayOrder::Incoherent);
-  std::uint32_t traced = 0;
-  for (std::size_t p = 0; p < masks.size(); ++p) {
-    fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
-    query.occluded(state_->scene.get(), packet.lanes.valid.data(), packet.rays.ray);
-    std::uint32_t valid = 0, hit = 0;
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      valid |= packet.lanes.valid[k] ? 1u << k : 0u;
-      hit |= packet.rays.ray.tfar[k] < 0.0f ? 1u << k : 0u;  // Embree sets -inf where something is in the way
-    }
-    masks[p] = static_cast<std::uint16_t>((~valid & 0xffffu) | hit);
-    traced += static_cast<std::uint32_t>(std::popcount(valid));
-  }
-  return traced;
-}
-
-std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
-                                  std::vector<RayHit>& hits) const {
-  assert(!rays.origins.empty() && masks.size() == rays.table.packets());
-  const FlushDenormals flush;
-  const OriginDealer dealer(rays.origins);
-  Packet packet;
   RayQuery any(RayOrder::Incoherent), closest(RayOrder::Coherent);
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
@@ -281,12 +260,12 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
       any.occluded(state_->scene.get(), packet.lanes.valid.data(), packet.rays.ray);
       std::uint32_t blocked = 0;
       for (std::size_t k = 0; k < kPacketWidth; ++k) {
-        const bool hit = packet.rays.ray.tfar[k] < 0.0f;
+        const bool hit = packet.rays.ray.tfar[k] < 0.0f;  // Embree sets -inf where something is in the way
         blocked |= hit ? 1u << k : 0u;
         packet.lanes.valid[k] = hit ? -1 : 0;
       }
       masks[p] = static_cast<std::uint16_t>(masks[p] | blocked);
-      if (blocked == 0) continue;
+      if (blocked == 0 || !hits) continue;
     }
     forgetHits(packet.rays);
     closest.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
@@ -296,11 +275,11 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
       if (!met.any()) continue;
       masks[p] = static_cast<std::uint16_t>(masks[p] | 1u << k);
       if (!met.back)
-        hits.push_back({.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
-                        .triangle = met.triangle,
-                        .u = met.u,
-                        .v = met.v,
-                        .distance = met.distance});
+        hits->push_back({.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
+                         .triangle = met.triangle,
+                         .u = met.u,
+                         .v = met.v,
+                         .distance = met.distance});
     }
   }
   return traced;

@@ -184,13 +184,17 @@ class RayScene {
   // Bit k of masks[p] is set where ray 16 p + k is blocked. Rays are dealt out over the origins by their
   // weights; below the horizons of all of them they are blocked untraced, or mirrored. Returns how many rays
   // were traced.
-  std::uint32_t trace(const SampleRays& rays, std::span<std::uint16_t> masks) const;
+  std::uint32_t trace(const SampleRays& rays, std::span<std::uint16_t> masks) const {
+    return walk(rays, /*mostly_blocked=*/false, masks, nullptr);
+  }
 
   // Does what trace() does, and appends the hits of blocked rays to `hits`, in the order of the rays. Backs
   // of single-sided surfaces block and are not listed. `mostly_blocked` is a hint about which way is faster,
   // and must be the same if the same result is wanted.
   std::uint32_t traceHits(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
-                          std::vector<RayHit>& hits) const;
+                          std::vector<RayHit>& hits) const {
+    return walk(rays, mostly_blocked, masks, &hits);
+  }
 
   // Sets blocked[i] to 1 if something lies between the ends of segment i, else to 0.
   void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;
@@ -210,6 +214,8 @@ class RayScene {
  private:
   struct State;
   explicit RayScene(std::unique_ptr<State> state);
+  std::uint32_t walk(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
+                     std::vector<RayHit>* hits) const;
   std::unique_ptr<State> state_;
 };
 

@@ -34,11 +34,11 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
   SurfaceColors colors;
   colors.geometry_ = &geometry;
   colors.surface_of_.resize(geometry.triangles.size());
-  const auto texture = [&](const gltf::TextureRef& ref) -> Result<Texture> {
+  const auto loadTexture = [&](const gltf::TextureRef& ref, Texture& texture) -> Result<void> {
     auto image = images.ofTexture(ref.texture);
     if (!image) return failAgain(image.error());
-    if (!*image) return Texture{};
-    return Texture{std::move(*image), scene.textures[static_cast<std::size_t>(ref.texture)].sampler};
+    if (*image) texture = {std::move(*image), scene.textures[static_cast<std::size_t>(ref.texture)].sampler};
+    return {};
   };
 
   for (const DrawGeometry& draw : geometry.draws) {
@@ -65,25 +65,18 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
     const auto first = geometry.colors.begin() + draw.first_vertex;
     surface.colored_vertices = std::any_of(
         first, first + draw.vertex_count, [](const glm::vec4& c) { return glm::vec3(c) != glm::vec3(1.0f); });
-    auto base = texture(material.base_color_texture);
-    if (!base) return failAgain(base.error());
-    surface.base_texture = std::move(*base);
-    if (surface.transmission > 0.0f) {
-      auto transmission = texture(material.transmission_texture);
-      if (!transmission) return failAgain(transmission.error());
-      surface.transmission_texture = std::move(*transmission);
-    }
+    auto loaded = loadTexture(material.base_color_texture, surface.base_texture);
+    if (loaded && surface.transmission > 0.0f)
+      loaded = loadTexture(material.transmission_texture, surface.transmission_texture);
     for (std::uint32_t k = 0; k < lights.size(); ++k)
       if (lights[k].kind == PlannedLight::Kind::Material &&
           static_cast<std::int32_t>(lights[k].index) == draw.material)
         surface.light = k;
-    if (surface.light != kNoLight) {
-      auto emissive = texture(material.emissive_texture);
-      if (!emissive) return failAgain(emissive.error());
-      surface.emissive_texture = std::move(*emissive);
-      if (surface.emissive_texture.image && !isGrey(*surface.emissive_texture.image))
-        colors.grey_emission_ = false;
-    }
+    if (loaded && surface.light != kNoLight)
+      loaded = loadTexture(material.emissive_texture, surface.emissive_texture);
+    if (!loaded) return failAgain(loaded.error());
+    if (surface.emissive_texture.image && !isGrey(*surface.emissive_texture.image))
+      colors.grey_emission_ = false;
     const bool grey_vertices = std::all_of(first, first + draw.vertex_count,
                                            [](const glm::vec4& c) { return isGrey(glm::vec3(c)); });
     const bool grey_base = isGrey(surface.base_color) && grey_vertices &&

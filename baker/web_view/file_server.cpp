@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <mutex>
 #include <sstream>
 #include <system_error>
@@ -149,45 +150,33 @@ void sendFile(const httplib::Request& request, httplib::Response& response, cons
                                 });
 }
 
+void handle(const ServedFiles& files, const std::string& start, int port, const httplib::Request& request,
+            httplib::Response& response) {
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+  response.set_header("Cache-Control", "no-store");  // a bundle that was baked again shows
+  // The viewer takes nothing from elsewhere. Draco's decoder is a worker made of a blob, and WebAssembly.
+  response.set_header("Content-Security-Policy",
+                      "default-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob: data:");
+  const std::string host = request.get_header_value("Host");
+  if (host != fmt::format("{}:{}", kHost, port) && host != fmt::format("localhost:{}", port))
+    return answer(response, 403, "This server answers to 127.0.0.1 and localhost only.");
+  if (request.method != "GET" && request.method != "HEAD") {
+    response.set_header("Allow", "GET, HEAD");
+    return answer(response, 405, "Files can be read here.");
+  }
+  if (request.path == "/") return response.set_redirect(start);
+  const auto found = files.find(request.path);
+  if (found == files.end()) return answer(response, 404, "There is no such file here.");
+  sendFile(request, response, found->second);
+}
+
 }  // namespace
 
-struct FileServer::State {
-  ServedFiles files;
-  std::string start;
-  int port = 0;
+Result<void> serveFiles(const ServedFiles& files, const std::string& start, int port,
+                        const std::function<void(const std::string& address)>& began,
+                        const std::stop_token& stop) {
   httplib::Server server;
-
-  void handle(const httplib::Request& request, httplib::Response& response) const {
-    response.set_header("X-Content-Type-Options", "nosniff");
-    response.set_header("Cross-Origin-Resource-Policy", "same-origin");
-    response.set_header("Cache-Control", "no-store");  // a bundle that was baked again shows
-    // The viewer takes nothing from elsewhere. Draco's decoder is a worker made of a blob, and WebAssembly.
-    response.set_header("Content-Security-Policy",
-                        "default-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob: data:");
-    const std::string host = request.get_header_value("Host");
-    if (host != fmt::format("{}:{}", kHost, port) && host != fmt::format("localhost:{}", port))
-      return answer(response, 403, "This server answers to 127.0.0.1 and localhost only.");
-    if (request.method != "GET" && request.method != "HEAD") {
-      response.set_header("Allow", "GET, HEAD");
-      return answer(response, 405, "Files can be read here.");
-    }
-    if (request.path == "/") return response.set_redirect(start);
-    const auto found = files.find(request.path);
-    if (found == files.end()) return answer(response, 404, "There is no such file here.");
-    sendFile(request, response, found->second);
-  }
-};
-
-FileServer::FileServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
-FileServer::FileServer(FileServer&&) noexcept = default;
-FileServer& FileServer::operator=(FileServer&&) noexcept = default;
-FileServer::~FileServer() = default;
-
-Result<FileServer> FileServer::bind(ServedFiles files, const std::string& start, int port) {
-  auto state = std::make_unique<State>();
-  state->files = std::move(files);
-  state->start = start;
-  httplib::Server& server = state->server;
   // The library's own choice lets several programs have one port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
@@ -198,28 +187,21 @@ Result<FileServer> FileServer::bind(ServedFiles files, const std::string& start,
   server.set_keep_alive_max_count(1);
   server.set_keep_alive_timeout(1);
   server.set_read_timeout(1);
-  server.set_pre_routing_handler(
-      [state = state.get()](const httplib::Request& request, httplib::Response& response) {
-        state->handle(request, response);
-        return httplib::Server::HandlerResponse::Handled;
-      });
+  int bound = port;
   if (port == 0)
-    state->port = server.bind_to_any_port(kHost);
-  else
-    state->port = server.bind_to_port(kHost, port) ? port : -1;
-  if (state->port <= 0)
+    bound = server.bind_to_any_port(kHost);
+  else if (!server.bind_to_port(kHost, port))
+    bound = -1;
+  if (bound <= 0)
     return fail(fmt::format("{}:{}", kHost, port),
                 "cannot be listened at, since another program does or you may not",
                 "give --port another number, or leave it out");
-  return FileServer(std::move(state));
-}
-
-std::string FileServer::address() const {
-  return fmt::format("http://{}:{}/", kHost, state_->port);
-}
-
-Result<void> FileServer::run(const std::stop_token& stop) {
-  httplib::Server& server = state_->server;
+  server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
+    handle(files, start, bound, request, response);
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  const std::string address = fmt::format("http://{}:{}/", kHost, bound);
+  began(address);
   std::atomic<bool> ended = false;
   std::mutex lock;
   std::condition_variable_any wake;
@@ -238,7 +220,7 @@ Result<void> FileServer::run(const std::stop_token& stop) {
   const bool asked = stop.stop_requested();
   server.stop();
   listening.join();
-  if (!asked) return fail(address(), "was ended by the system", "try again");
+  if (!asked) return fail(address, "was ended by the system", "try again");
   return {};
 }
 

@@ -200,7 +200,7 @@ Result<void> run(const Options& options) {
     s.update(std::chrono::duration<double>(now - last).count());
     last = now;
     // The last frame shows what was awaited, so there is one more when it has come.
-    const bool awaits = s.awaits();
+    const bool awaits = s.scenes.busy();
     if (!woken && !awaits && !std::exchange(awaited, false) && !s.moving() && !ui.typing()) continue;
     awaited = awaits;
     ui.begin(scripted);
@@ -210,8 +210,8 @@ Result<void> run(const Options& options) {
     }
     std::vector<std::filesystem::path> dropped;
     for (const std::filesystem::path& file : ui.takeDropped())
-      if (const auto asset = assetAt(file); asset && asset->kind == AssetKind::EnvironmentMap)
-        runOrLog(s, "use-asset", std::array{file.string()});
+      if (isEnvironmentMap(file.string()))
+        runOrLog(s, "environment-map", std::array{file.string()});
       else
         dropped.push_back(file);  // also a folder, or what cannot be opened
     if (!dropped.empty()) s.files.openLogged(dropped);

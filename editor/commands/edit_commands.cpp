@@ -42,20 +42,16 @@ Result<void> duplicateSelected(Session& session) {
       .map([&](const std::vector<ecs::Entity>& copies) { selectAll(session, copies); });
 }
 
-Result<void> copy(Session& session, Words words) {
-  const ecs::Entity primary = session.selection.primaryEntity(session.document);
-  return (words.empty() ? copyEntities(session.document, selected(session))
-                        : copyComponent(session.document, primary, words[0]))
-      .map([&](Clip clip) { session.clipboard = std::move(clip); });
+Result<void> copy(Session& session) {
+  return copyEntities(session.document, selected(session)).map([&](std::vector<EntitySnapshot> copies) {
+    session.clipboard = std::move(copies);
+  });
 }
 
 Result<void> paste(Session& session) {
-  const Clip& clip = session.clipboard;
-  if (clip.component)
-    return pasteComponent(session.document, session.history, selected(session), *clip.component);
-  if (clip.entities.empty())
-    return fail("clipboard", "holds nothing that was copied here", "copy a component or entities first");
-  return pasteEntities(session.document, session.history, clip.entities)
+  if (session.clipboard.empty())
+    return fail("clipboard", "holds nothing that was copied here", "copy entities first");
+  return pasteEntities(session.document, session.history, session.clipboard)
       .map([&](const std::vector<ecs::Entity>& pasted) { selectAll(session, pasted); });
 }
 
@@ -119,12 +115,8 @@ std::vector<Command> editCommands() {
        item("redo", "Redo", "Ctrl+Shift+Z", "Do again what was taken back",
             [](Session& session) { return replayed(session, session.history.redo()); })
            .onlyIf([](const Session& session) { return session.history.canRedo(); }),
-       separator(),
-       item("copy", "Copy", "Ctrl+C", "Copy what is selected; a component by its header in the inspector",
-            copy)
-           .taking("[COMPONENT]", 0, 1)
-           .onlyIf(anySelected),
-       item("paste", "Paste", "Ctrl+V", "Paste entities, or a component onto all that are selected", paste),
+       separator(), item("copy", "Copy", "Ctrl+C", "Copy what is selected", copy).onlyIf(anySelected),
+       item("paste", "Paste", "Ctrl+V", "Paste what was copied at the top of the world", paste),
        item("duplicate", "Duplicate", "Ctrl+D", "Copies of what is selected, beside it", duplicateSelected)
            .onlyIf(anySelected),
        item("delete", "Delete", "Delete", "Take away what is selected; what a bundle brought stays",
@@ -180,14 +172,6 @@ glm::quat facing(const glm::vec3& direction) {
                 glm::degrees(std::asin(std::clamp(direction.y, -1.0f, 1.0f))));
 }
 
-void put(EntitySnapshot& snapshot, std::string_view component, std::string_view field, scene::Value value) {
-  for (ComponentValues& part : snapshot.components) {
-    if (part.component->name != component) continue;
-    for (std::size_t i = 0; i < part.values.size(); ++i)
-      if (part.component->fields[i].name == field) part.values[i] = std::move(value);
-  }
-}
-
 // Returns the strength at which a white surface at this distance, facing the light, is seen well.
 float strengthFor(LampKind kind, float distance_m, float radius_m, float exposure_ev) {
   const float irradiance = std::numbers::pi_v<float> * kOfWhite * std::exp2(-exposure_ev);
@@ -213,13 +197,13 @@ EntitySnapshot newLight(const Session& session, LampKind kind, std::string name,
   const float distance = glm::length(back) > 0.0f ? glm::length(back) : 1.0f;
   const float radius = rounded(kRadiusOfDistance * distance);
   EntitySnapshot light = lightEntity(scene::kLightKindWords[static_cast<std::size_t>(kind)], std::move(name));
-  put(light, "Transform", "translation", place);
+  light.put("Transform", "translation", place);
   if (kind == LampKind::Directional)
-    put(light, "Transform", "rotation", facing(session.viewing.goal.azimuth_deg + kShoulderDeg, kHighDeg));
+    light.put("Transform", "rotation", facing(session.viewing.goal.azimuth_deg + kShoulderDeg, kHighDeg));
   if (kind == LampKind::Spot || kind == LampKind::Disc)
-    put(light, "Transform", "rotation", facing(back / distance));
-  if (kind == LampKind::Sphere || kind == LampKind::Disc) put(light, "Light", "radius", radius);
-  put(light, "Light", "strength", rounded(strengthFor(kind, distance, radius, session.picture.exposure_ev)));
+    light.put("Transform", "rotation", facing(back / distance));
+  if (kind == LampKind::Sphere || kind == LampKind::Disc) light.put("Light", "radius", radius);
+  light.put("Light", "strength", rounded(strengthFor(kind, distance, radius, session.picture.exposure_ev)));
   return light;
 }
 
@@ -259,7 +243,7 @@ Command entityOf(EntitySnapshot (*make)(std::string), const char* id, const char
                 const auto at = placeOf(words);
                 if (!at) return failAgain(at.error());
                 EntitySnapshot snapshot = make(unusedName(session.document, stem));
-                put(snapshot, "Transform", "translation", at->value_or(newPlace(session)));
+                snapshot.put("Transform", "translation", at->value_or(newPlace(session)));
                 return create(session, snapshot);
               })
       .taking("[X Y Z]", 0, 3);

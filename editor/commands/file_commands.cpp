@@ -13,7 +13,7 @@ Result<void> open(Session& session, Words words) {
   session.window.dialog =
       Dialog{.kind = Dialog::Kind::OpenFile,
              .title = "Open",
-             .kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}},
+             .endings = {".gltf", ".glb", ".json"},
              .folder = startFolder(session),
              .yes = "Open",
              .answered = [](Session& s, const std::string& file) { s.files.openLogged({file}); }};
@@ -44,32 +44,6 @@ Answer saveTo(Session& session, Words words, const std::filesystem::path& presen
 
 constexpr std::size_t kMostFiles = 1000;
 
-Answer assets(Session& session, Words words) {
-  session.assets.update(session);
-  if (!words.empty()) session.assets.search = words[0];
-  Answer answer = nlohmann::json::array();
-  for (const AssetGroup& group : session.assets.groups())
-    for (const Asset& asset : group.assets)
-      if (matches(asset, session.assets.search))
-        answer->push_back({{"name", asset.file.filename().string()},
-                           {"kind", kindWord(asset.kind)},
-                           {"file", asset.file.string()},
-                           {"bytes", asset.bytes},
-                           {"group", group.title}});
-  return answer;
-}
-
-Answer useAsset(Session& session, Words words) {
-  std::optional<Asset> asset = assetAt(words[0]);
-  if (!asset) {
-    session.assets.update(session);
-    if (const Asset* listed = session.assets.find(words[0])) asset = *listed;
-  }
-  if (!asset) return fail(words[0], "is no asset", "\"assets\" lists them");
-  const bool light = asset->kind == AssetKind::EnvironmentMap;
-  return runCommand(session, light ? "environment-map" : "open", std::array{asset->file.string()});
-}
-
 }  // namespace
 
 std::vector<Command> fileCommands() {
@@ -96,20 +70,16 @@ std::vector<Command> fileCommands() {
            .taking("FILE", 1, 1),
        separator(),
        item("close", "Close scene", "Ctrl+W",
-            "Take the scene that is selected out of the world; its files stay, undo brings it back",
+            "Take the scene that is selected out of the world; its files stay",
             [](Session& session, Words words) {
               return findScene(session, wordAt(words, 0)).map([&](std::size_t entry) {
-                session.scene_steps.close(entry);
+                session.files.close(entry);
               });
             })
            .taking("[SCENE]", 0, 1)
            .onlyIf(anyOpen),
        item("quit", "Quit", "Ctrl+Q", "End the editor; bakes go on where they were when it starts again",
-            [](Session& session) { session.files.askToQuit(); }),
-       scripted("assets", "Environment maps, scenes, bundles and worlds to choose from, searched", "[SEARCH]",
-                0, 1, assets),
-       scripted("use-asset", "Light from this environment map; open this scene, bundle or world", "FILE", 1,
-                1, useAsset)});
+            [](Session& session) { session.files.askToQuit(); })});
 }
 
 namespace {

@@ -52,7 +52,7 @@ Result<void> setEnvironmentMap(Session& session, Words words) {
   if (words.empty()) {
     session.window.dialog = Dialog{.kind = Dialog::Kind::OpenFile,
                                    .title = "Light from an environment map",
-                                   .kinds = {{"Environment maps", {".hdr", ".exr"}}},
+                                   .endings = {".hdr", ".exr"},
                                    .folder = workingFolder(),
                                    .answered = [](Session& s, const std::string& file) {
                                      runOrLog(s, "environment-map", std::array{file});

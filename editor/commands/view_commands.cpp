@@ -138,8 +138,6 @@ std::vector<Command> viewCommands() {
        viewOf(SurfaceView::Irradiance, "view-irradiance", "Irradiance", "2",
               "What arrives at surfaces, without their own color"),
        viewOf(SurfaceView::TransferDc, "view-dc", "Average visibility", "3", "What of uniform light arrives"),
-       viewOf(SurfaceView::TransferBand, "view-band", "One SH band", "4",
-              "Energy of one band of the transfer"),
        viewOf(SurfaceView::ErrorEstimate, "view-error", "Coding error", "5",
               "What coding the transfer costs, as the bake measured it"),
        viewOf(SurfaceView::Importance, "view-importance", "Importance", "6",
@@ -147,7 +145,7 @@ std::vector<Command> viewCommands() {
        viewOf(SurfaceView::ClusterIds, "view-clusters", "Clusters", "7", "Which samples are coded together"),
        viewOf(SurfaceView::Normals, "view-normals", "Normals", "8", "Shading normals"),
        viewOf(SurfaceView::Wireframe, "view-wireframe", "Wireframe", "9", "The triangles over the picture"),
-       scripted("view", "What surfaces show", "NAME[:BAND]", 1, 1, setView),
+       scripted("view", "What surfaces show", "NAME", 1, 1, setView),
        separator(),
        transferOf(0, "unshadowed", "Unshadowed", "Shift+1", "Light without shadows or bounces"),
        transferOf(1, "shadowed", "Shadowed", "Shift+2", "With shadows, without bounces"),
@@ -243,7 +241,21 @@ void showAbout(Session& session) {
                                      "Bake a glTF scene once, light it any way you like.\n"
                                      "Precomputed radiance transfer: Sloan, Kautz and Snyder, SIGGRAPH 2002.",
                                  .yes = "Close",
-                                 .no = "OK"};
+                                 .no = ""};
+}
+
+void showKeys(Session& session) {
+  std::string text;
+  for (const Command& command : commandList())
+    if (*command.shortcut != '\0') text += fmt::format("{}: {}\n", command.shortcut, command.title);
+  text +=
+      "\nMiddle drag: orbit; also Alt and the left button\nShift+middle: pan\nWheel: nearer, farther\n"
+      "Right drag: look around\nRight+WASDQE: fly; with Shift faster\nRight click: menu of the selection\n"
+      "Click: select; with Ctrl or Shift several\nShift+drag: finer numbers and handles\n"
+      "Ctrl+drag: handles in steps, or freely\nAlt+drag: coarser numbers\n"
+      "Double click in the tree: frame";
+  session.window.dialog =
+      Dialog{.title = "Keys and pointer", .question = std::move(text), .yes = "Close", .no = ""};
 }
 
 Answer listCommands(Session&) {
@@ -275,19 +287,14 @@ std::vector<Command> windowCommands() {
             }),
        separator(), dockOf(Dock::Left, "left-panels", "Left panels", "The scene tree"),
        dockOf(Dock::Right, "right-panels", "Right panels", "Inspector, light, settings"),
-       dockOf(Dock::Bottom, "bottom-panels", "Bottom panels", "Bakes, assets, cost, streaming, log"),
+       dockOf(Dock::Bottom, "bottom-panels", "Bottom panels", "Bakes, cost, log"),
        scripted("panel", "Bring a panel up", "NAME", 1, 1,
                 [](Session& session, Words words) { session.window.wanted_panels.push_back(words[0]); })});
-  const std::vector<Command> help = inMenu(
-      "Help", {item("shortcuts", "Keys and pointer", "F1", "All keys, and what the pointer does in the view",
-                    [](Session& session) { session.window.keys = true; }),
-               item("palette", "Command palette", "Ctrl+P", "Find a command by its words, and run it",
-                    [](Session& session) {
-                      session.window.palette = true;
-                      session.window.palette_words.clear();
-                    }),
-               item("about", "About", "", "Version and origin", showAbout),
-               scripted("commands", "All commands, as JSON", "", 0, 0, listCommands)});
+  const std::vector<Command> help =
+      inMenu("Help", {item("shortcuts", "Keys and pointer", "F1",
+                           "All keys, and what the pointer does in the view", showKeys),
+                      item("about", "About", "", "Version and origin", showAbout),
+                      scripted("commands", "All commands, as JSON", "", 0, 0, listCommands)});
   window.insert(window.end(), help.begin(), help.end());
   return window;
 }

@@ -10,11 +10,8 @@
 
 namespace lambent::editor {
 
-namespace {
-
-// Returns snapshots of the entities and their descendants, parents first. Errors: those of duplicate().
-Result<std::vector<EntitySnapshot>> copiesOf(const Document& document,
-                                             std::span<const ecs::Entity> entities) {
+Result<std::vector<EntitySnapshot>> copyEntities(const Document& document,
+                                                 std::span<const ecs::Entity> entities) {
   const ecs::Registry& registry = document.registry();
   std::map<ecs::Entity, const scene::DrawItem*> draws;
   for (auto [entity, draw] : registry.view<scene::DrawItem>()) draws[draw.node] = &draw;
@@ -35,10 +32,18 @@ Result<std::vector<EntitySnapshot>> copiesOf(const Document& document,
   return copies;
 }
 
+namespace {
+
+std::string nameIn(const EntitySnapshot& snapshot) {
+  const auto& name = std::get<std::string>(*snapshot.find("Name", "name"));
+  return name.empty() ? "copy" : name;
+}
+
 // Creates entities from the snapshots as one step of the history. Returns those whose parent is not among
-// them.
+// them. rename: these get names that no entity has.
 Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
-                                            std::vector<EntitySnapshot> copies, std::string name) {
+                                            std::vector<EntitySnapshot> copies, std::string name,
+                                            bool rename) {
   // Every copy gets a new id, and its parent is renamed if it is a copy, too.
   std::map<StableId, StableId> renamed;
   for (const EntitySnapshot& copy : copies) renamed[copy.id] = document.newId();
@@ -51,6 +56,7 @@ Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history
       copy.parent = parent->second;
     else
       tops.push_back(copy.id);
+    if (rename && parent == renamed.end()) copy.put("Name", "name", unusedName(document, nameIn(copy)));
     if (const Result<ecs::Entity> made = history.create(copy); !made) {
       history.cancel();
       return failAgain(made.error());
@@ -80,24 +86,10 @@ std::string unusedName(const Document& document, const std::string& name) {
 Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
                                            std::span<const ecs::Entity> entities) {
   for (const ecs::Entity entity : entities) document.adopt(entity);
-  Result<std::vector<EntitySnapshot>> copies = copiesOf(document, entities);
+  Result<std::vector<EntitySnapshot>> copies = copyEntities(document, entities);
   if (!copies) return failAgain(copies.error());
-  history.begin("duplicate of " + entitiesName(document, entities));
-  const Result<std::vector<ecs::Entity>> made = makeCopies(document, history, std::move(*copies), "copies");
-  if (!made) {
-    history.cancel();
-    return made;
-  }
-  for (const ecs::Entity entity : *made) {
-    if (const Result<void> named =
-            history.setField(entity, "Name", "name", unusedName(document, document.nameOf(entity)));
-        !named) {
-      history.cancel();
-      return failAgain(named.error());
-    }
-  }
-  history.commit();
-  return made;
+  const std::string name = "duplicate of " + entitiesName(document, entities);
+  return makeCopies(document, history, std::move(*copies), name, /*rename=*/true);
 }
 
 scene::Value defaultValue(const Document& document, const Baseline& baseline, ecs::Entity entity,
@@ -135,47 +127,11 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
       /*in_range=*/false);
 }
 
-Result<Clip> copyComponent(const Document& document, ecs::Entity entity, std::string_view component) {
-  const scene::ComponentInfo* info = scene::findComponent(component);
-  if (!info || !info->has(document.registry(), entity))
-    return fail(document.nameOf(entity), fmt::format("has no {}", component));
-  return Clip{.component = componentValues(document.registry(), entity, *info), .entities = {}};
-}
-
-Result<Clip> copyEntities(const Document& document, std::span<const ecs::Entity> entities) {
-  return copiesOf(document, entities).map([](std::vector<EntitySnapshot> copies) {
-    return Clip{.component = {}, .entities = std::move(copies)};
-  });
-}
-
-Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
-                            const ComponentValues& component) {
-  const scene::ComponentInfo& info = *component.component;
-  history.begin(fmt::format("paste of {} onto {}", info.name, entitiesName(document, entities)));
-  std::vector<FieldEdit> edits;
-  for (const ecs::Entity entity : entities) {
-    if (!info.has(document.registry(), entity)) {
-      if (const Result<void> added = history.addComponent(entity, info.name); !added) {
-        history.cancel();
-        return added;
-      }
-    }
-    for (std::size_t i = 0; i < component.values.size(); ++i)
-      edits.push_back({entity, info.name, info.fields[i].name, component.values[i]});
-  }
-  if (const Result<void> set = history.setFields(edits); !set) {
-    history.cancel();
-    return set;
-  }
-  history.commit();
-  return {};
-}
-
 Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history,
                                                std::vector<EntitySnapshot> copies) {
   for (EntitySnapshot& copy : copies)
     if (std::ranges::find(copies, copy.parent, &EntitySnapshot::id) == copies.end()) copy.parent = kNoId;
-  return makeCopies(document, history, std::move(copies), "paste");
+  return makeCopies(document, history, std::move(copies), "paste", /*rename=*/false);
 }
 
 }  // namespace lambent::editor

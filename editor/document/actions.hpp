@@ -2,7 +2,6 @@
 // An error says what is wrong and changes nothing.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,22 +32,10 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
                             std::span<const ecs::Entity> entities, std::string_view component,
                             std::string_view field = {});
 
-// Holds what was copied last: one component, or entities with their descendants, parents first.
-struct Clip {
-  std::optional<ComponentValues> component;
-  std::vector<EntitySnapshot> entities;
-};
-
-// Error: the entity does not have the component.
-Result<Clip> copyComponent(const Document& document, ecs::Entity entity, std::string_view component);
-// Takes the same entities as duplicate().
-Result<Clip> copyEntities(const Document& document, std::span<const ecs::Entity> entities);
-
-// Pastes a component onto all given entities. A Created entity that lacks the component gets it if the
-// component may be added. Errors: an entity cannot take the component.
-Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
-                            const ComponentValues& component);
-// Creates the copied entities at the top of the world, and returns the topmost ones.
+// Copies entities with their descendants, parents first. Takes the same entities as duplicate().
+Result<std::vector<EntitySnapshot>> copyEntities(const Document& document,
+                                                 std::span<const ecs::Entity> entities);
+// Creates copied entities at the top of the world, and returns the topmost ones.
 Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history,
                                                std::vector<EntitySnapshot> copies);
 

@@ -166,6 +166,14 @@ const scene::Value* EntitySnapshot::find(std::string_view component, std::string
   return nullptr;
 }
 
+void EntitySnapshot::put(std::string_view component, std::string_view field, scene::Value value) {
+  for (ComponentValues& part : components) {
+    if (part.component->name != component) continue;
+    for (std::size_t i = 0; i < part.values.size(); ++i)
+      if (part.component->fields[i].name == field) part.values[i] = std::move(value);
+  }
+}
+
 ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,
                                 const scene::ComponentInfo& component) {
   ComponentValues part{&component, {}};
@@ -197,46 +205,28 @@ ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot) {
   return entity;
 }
 
-std::size_t bytesOf(const scene::Value& value) {
-  std::size_t bytes = sizeof(value);
-  if (const auto* text = std::get_if<std::string>(&value)) bytes += text->size();
-  return bytes;
-}
-
-std::size_t bytesOf(const EntitySnapshot& snapshot) {
-  std::size_t bytes = sizeof(snapshot);
-  for (const ComponentValues& part : snapshot.components) {
-    bytes += sizeof(part);
-    for (const scene::Value& value : part.values) bytes += bytesOf(value);
-  }
-  return bytes;
-}
-
 namespace {
 
-// Returns the defaults of a component, with another value for one field.
-ComponentValues defaults(std::string_view component, std::string_view field = {}, scene::Value value = {}) {
+ComponentValues defaults(std::string_view component) {
   ComponentValues part{scene::findComponent(component), {}};
-  for (const scene::FieldInfo& info : part.component->fields)
-    part.values.push_back(info.name == field ? value : info.default_value);
+  for (const scene::FieldInfo& info : part.component->fields) part.values.push_back(info.default_value);
   return part;
 }
 
 }  // namespace
 
 EntitySnapshot emptyEntity(std::string name) {
-  return {kNoId, kNoId, {defaults("Name", "name", std::move(name)), defaults("Transform")}};
+  EntitySnapshot snapshot{kNoId, kNoId, {defaults("Name"), defaults("Transform")}};
+  snapshot.put("Name", "name", std::move(name));
+  return snapshot;
 }
 
 EntitySnapshot lightEntity(std::string_view kind, std::string name) {
   EntitySnapshot snapshot = emptyEntity(std::move(name));
-  ComponentValues light = defaults("Light", "kind", scene::Word{std::string(kind)});
+  snapshot.components.push_back(defaults("Light"));
+  snapshot.put("Light", "kind", scene::Word{std::string(kind)});
   // Spheres and discs of radius 0 emit nothing.
-  for (std::size_t i = 0; i < light.values.size(); ++i) {
-    if (light.component->fields[i].name == "radius" && (kind == "sphere" || kind == "disc"))
-      light.values[i] = 0.1f;
-  }
-  snapshot.components.push_back(std::move(light));
+  if (kind == "sphere" || kind == "disc") snapshot.put("Light", "radius", 0.1f);
   return snapshot;
 }
 

@@ -17,13 +17,10 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/ecs/registry.hpp"
-#include "runtime/scene/reflection.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
-
-// Holds what this version does not know, as JSON text by key. It is kept and written back.
-using UnknownFields = std::map<std::string, std::string>;
 
 struct BundleEntry {
   std::string path;            // relative to the world file's folder, or absolute; '/' between folders
@@ -31,7 +28,6 @@ struct BundleEntry {
   std::uint32_t instance = 0;  // distinguishes bundles of the same id
   std::string source;          // the glTF file that it was baked from, a path like `path`; empty: unknown
   std::map<std::string, std::string> bake_options;  // by name, as in Description::bake_options
-  UnknownFields unknown;
   bool operator==(const BundleEntry&) const = default;
 };
 
@@ -47,7 +43,6 @@ struct WorldState {
   // --edit-key.
   std::vector<std::string> key_edits;
   std::optional<float> exposure_ev;             // none: automatic
-  std::string camera;                           // a camera word; empty: the program chooses
   std::map<std::string, std::string> settings;  // of the frame, by option name
   std::map<std::string, std::string> view;      // of the editor: free camera, panels
   bool operator==(const WorldState&) const = default;
@@ -140,6 +135,8 @@ struct EntitySnapshot {
   std::vector<ComponentValues> components;
 
   const scene::Value* find(std::string_view component, std::string_view field) const;
+  // Sets a field of a component that the snapshot has.
+  void put(std::string_view component, std::string_view field, scene::Value value);
 };
 
 ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,
@@ -148,8 +145,6 @@ ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entit
 EntitySnapshot takeSnapshot(const Document& document, ecs::Entity entity);
 // Creates a Created entity with these components, below the world if its parent does not exist.
 ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot);
-std::size_t bytesOf(const EntitySnapshot& snapshot);
-std::size_t bytesOf(const scene::Value& value);
 
 // Return what the Create menu makes. Each has a Name and a Transform.
 EntitySnapshot emptyEntity(std::string name);

@@ -2,123 +2,168 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 namespace {
 
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <typename... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;  // Clang 16 deduces no arguments of aggregates
-
 tl::unexpected<Error> gone() {
   return fail("entity", "is no longer there", "choose one that is");
 }
 
+const ComponentValues* find(const EntitySnapshot& snapshot, const scene::ComponentInfo* component) {
+  const auto found = std::ranges::find(snapshot.components, component, &ComponentValues::component);
+  return found == snapshot.components.end() ? nullptr : &*found;
+}
+
+bool same(const ComponentValues& a, const ComponentValues* b) {
+  return b && std::ranges::equal(a.values, b->values, scene::sameBits);
+}
+
+std::size_t bytesOf(const EntitySnapshot& snapshot) {
+  std::size_t bytes = sizeof(snapshot);
+  for (const ComponentValues& part : snapshot.components) {
+    bytes += sizeof(part) + part.values.size() * sizeof(scene::Value);
+    for (const scene::Value& value : part.values)
+      if (const auto* text = std::get_if<std::string>(&value)) bytes += text->size();
+  }
+  return bytes;
+}
+
 }  // namespace
 
-// ---- Carrying out changes.
-
-void History::run(Change change) {
-  std::vector<std::string> missing;
-  apply(change, true, missing);
-  assert(missing.empty() && "an edit of something that is not there");
-  keep(std::move(change));
+std::size_t History::State::bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [id, snapshot] : entities) bytes += sizeof(id) + (snapshot ? bytesOf(*snapshot) : 0);
+  if (world)
+    bytes += sizeof(*world) + 64 * (world->settings.size() + world->view.size() + world->lights.size()) +
+             512 * world->bundles.size();
+  return bytes;
 }
 
-void History::keep(Change change) {
+// ---- What a step touches.
+
+void History::touch(ecs::Entity entity) {
+  touch(document_.adopt(entity));
+}
+
+void History::touch(StableId id) {
   ++version_;
-  if (const auto* field = std::get_if<FieldChange>(&change)) {
-    const auto [place, is_new] = joinable_.try_emplace({field->entity, field->field}, current_.size());
-    if (!is_new) {
-      std::get<FieldChange>(current_[place->second]).after = field->after;
-      return;
-    }
-  } else if (const auto* world = std::get_if<WorldChange>(&change)) {
-    const auto outer =
-        std::find_if(scopes_.rbegin(), scopes_.rend(), [](const Scope& s) { return !s.single; });
-    const bool joins = outer != scopes_.rend() && current_.size() > outer->first;
-    if (auto* last = joins ? std::get_if<WorldChange>(&current_.back()) : nullptr) {
-      last->after = world->after;
-      return;
-    }
-  } else if (!std::holds_alternative<ParentChange>(change)) {
-    joinable_.clear();  // values before and after an entity or component was created anew must not be joined
-  }
-  current_.push_back(std::move(change));
+  auto& entities = scopes_.back().before.entities;
+  if (entities.contains(id)) return;
+  const ecs::Entity entity = document_.find(id);
+  entities.emplace(id, entity ? std::optional(takeSnapshot(document_, entity)) : std::nullopt);
 }
 
-void History::apply(const Change& change, bool forth, std::vector<std::string>& missing) {
-  ecs::Registry& registry = document_.registry();
-  // Finds the entity, or adds its name to `missing`.
-  const auto there = [&](StableId id) {
+bool History::edited() const {
+  return std::ranges::any_of(scopes_, [](const Scope& scope) { return !scope.before.empty(); });
+}
+
+History::State History::now(const State& before) const {
+  State state;
+  for (const auto& [id, snapshot] : before.entities) {
     const ecs::Entity entity = document_.find(id);
-    if (!entity) missing.push_back(document_.nameOf(id));
-    return entity;
-  };
-  std::visit(
-      Overloaded{
-          [&](const FieldChange& field) {
-            const ecs::Entity entity = there(field.entity);
-            if (entity && !field.field->restore(registry, entity, forth ? field.after : field.before))
-              missing.push_back(fmt::format("{} of {}", field.field->component, document_.nameOf(entity)));
-          },
-          [&](const ParentChange& parent) {
-            const ecs::Entity entity = there(parent.entity);
-            if (!entity || !registry.has<scene::Transform>(entity)) return;
-            const StableId wanted = forth ? parent.after : parent.before;
-            registry.edit<scene::Transform>(entity).parent = wanted == kNoId ? ecs::Entity{} : there(wanted);
-          },
-          [&](const EntityChange& entity) {
-            const StableId parent = entity.snapshot.parent;
-            if (entity.made == forth) {
-              if (parent != kNoId) there(parent);
-              makeEntity(document_, entity.snapshot);
-            } else if (const ecs::Entity doomed = there(entity.snapshot.id)) {
-              registry.destroy(doomed);
-            }
-          },
-          [&](const ComponentChange& component) {
-            const ecs::Entity entity = there(component.entity);
-            if (!entity) return;
-            const scene::ComponentInfo& info = *component.values.component;
-            if (component.added != forth) {
-              info.remove(registry, entity);
-              return;
-            }
-            info.add(registry, entity);
-            for (std::size_t i = 0; i < info.fields.size(); ++i)
-              info.fields[i].restore(registry, entity, component.values.values[i]);
-          },
-          [&](const WorldChange& world) { document_.setWorld(forth ? world.after : world.before); },
-          [&](const OutsideChange& outside) { outside.carry_out(forth, missing); }},
-      change);
+    state.entities.emplace(id, entity ? std::optional(takeSnapshot(document_, entity)) : std::nullopt);
+  }
+  if (before.world) state.world = document_.world();
+  return state;
+}
+
+void History::keepDifferences(State& before, State& after) {
+  for (auto at = before.entities.begin(); at != before.entities.end();) {
+    std::optional<EntitySnapshot>& from = at->second;
+    std::optional<EntitySnapshot>& to = after.entities.at(at->first);
+    bool differs = from.has_value() != to.has_value();
+    if (from && to) {
+      const auto unchanged = [](const EntitySnapshot& other) {
+        return [&other](const ComponentValues& part) { return same(part, find(other, part.component)); };
+      };
+      EntitySnapshot rest = *from;
+      std::erase_if(rest.components, unchanged(*to));
+      std::erase_if(to->components, unchanged(*from));
+      from = std::move(rest);
+      differs = !from->components.empty() || !to->components.empty() || from->parent != to->parent;
+    }
+    if (!differs) after.entities.erase(at->first);
+    at = differs ? std::next(at) : before.entities.erase(at);
+  }
+  if (before.world == after.world) before.world.reset(), after.world.reset();
+}
+
+void History::goEntity(StableId id, const std::optional<EntitySnapshot>& from,
+                       const std::optional<EntitySnapshot>& to, std::vector<std::string>& missing) {
+  ecs::Registry& registry = document_.registry();
+  if (!from && to) {
+    makeEntity(document_, *to);
+    return;
+  }
+  const ecs::Entity entity = document_.find(id);
+  if (!entity) {
+    missing.push_back(document_.nameOf(id));
+    return;
+  }
+  if (!to) {
+    registry.destroy(entity);
+    return;
+  }
+  for (const ComponentValues& part : from->components)
+    if (!find(*to, part.component)) part.component->remove(registry, entity);
+  for (const ComponentValues& part : to->components) {
+    const ComponentValues* before = find(*from, part.component);
+    if (!before) part.component->add(registry, entity);
+    bool there = true;
+    for (std::size_t i = 0; i < part.values.size(); ++i)
+      if (!before || !scene::sameBits(before->values[i], part.values[i]))
+        there = part.component->fields[i].restore(registry, entity, part.values[i]) && there;
+    if (!there) missing.push_back(fmt::format("{} of {}", part.component->name, document_.nameOf(entity)));
+  }
+}
+
+void History::goParent(StableId id, const std::optional<EntitySnapshot>& from, const EntitySnapshot& to,
+                       std::vector<std::string>& missing) {
+  ecs::Registry& registry = document_.registry();
+  const ecs::Entity entity = document_.find(id);
+  if ((from && from->parent == to.parent) || !registry.has<scene::Transform>(entity)) return;
+  const ecs::Entity parent = document_.find(to.parent);
+  if (to.parent != kNoId && !parent) missing.push_back(document_.nameOf(to.parent));
+  registry.edit<scene::Transform>(entity).parent = parent;
+}
+
+void History::go(const State& from, const State& to, std::vector<std::string>& missing) {
+  for (const auto& [id, snapshot] : to.entities) goEntity(id, from.entities.at(id), snapshot, missing);
+  // Parents are set last, when all entities exist.
+  for (const auto& [id, snapshot] : to.entities)
+    if (snapshot) goParent(id, from.entities.at(id), *snapshot, missing);
+  if (to.world) document_.setWorld(*to.world);
+  ++version_;
 }
 
 // ---- Steps.
 
 void History::begin(std::string name) {
-  scopes_.push_back({std::move(name), current_.size(), /*single=*/false});
-  joinable_.clear();  // an edit inside the scope may be cancelled and must not join an earlier one
-}
-
-void History::beginEdit(std::string name) {
-  scopes_.push_back({std::move(name), current_.size(), /*single=*/true});
+  scopes_.push_back({std::move(name), {}});
 }
 
 void History::commit() {
   assert(!scopes_.empty() && "commit() without begin()");
-  endEdit();
+  Scope scope = std::move(scopes_.back());
+  scopes_.pop_back();
+  if (scopes_.empty()) {
+    State after = now(scope.before);
+    keepDifferences(scope.before, after);
+    if (!after.empty()) push({std::move(scope.name), std::move(scope.before), std::move(after)});
+    return;
+  }
+  State& outer = scopes_.back().before;
+  outer.entities.merge(scope.before.entities);  // keeps what the outer scope has already
+  if (!outer.world) outer.world = std::move(scope.before.world);
 }
 
 void History::beginDrag(std::string name) {
@@ -131,56 +176,18 @@ void History::endDrag() {
   if (std::exchange(dragging_, false) && open()) commit();
 }
 
-void History::endEdit() {
-  Scope scope = std::move(scopes_.back());
-  scopes_.pop_back();
-  if (!scopes_.empty()) return;
-  joinable_.clear();
-  push(std::move(scope.name), std::exchange(current_, {}));
-}
-
 void History::cancel() {
   assert(!scopes_.empty() && "cancel() without begin()");
-  const std::size_t first = scopes_.back().first;
+  const Scope scope = std::move(scopes_.back());
   scopes_.pop_back();
   std::vector<std::string> missing;
-  for (; current_.size() > first; current_.pop_back()) apply(current_.back(), false, missing);
-  joinable_.clear();
-  ++version_;
+  go(now(scope.before), scope.before, missing);
 }
 
-std::size_t History::bytesOf(const Change& change) {
-  std::size_t bytes = sizeof(change);
-  if (const auto* field = std::get_if<FieldChange>(&change)) {
-    for (const auto* value : {&field->before, &field->after})
-      bytes += editor::bytesOf(*value) - sizeof(*value);
-  } else if (const auto* entity = std::get_if<EntityChange>(&change)) {
-    bytes += editor::bytesOf(entity->snapshot);
-  } else if (const auto* component = std::get_if<ComponentChange>(&change)) {
-    for (const scene::Value& value : component->values.values) bytes += editor::bytesOf(value);
-  } else if (const auto* world = std::get_if<WorldChange>(&change)) {
-    for (const WorldState* state : {&world->before, &world->after})
-      bytes += 64 * (state->settings.size() + state->view.size() + state->lights.size()) +
-               512 * state->bundles.size();
-  } else if (const auto* outside = std::get_if<OutsideChange>(&change)) {
-    bytes += outside->bytes;
-  }
-  return bytes;
-}
-
-void History::push(std::string name, std::vector<Change> changes) {
-  // A value that returned to where it began is no change.
-  std::erase_if(changes, [](const Change& change) {
-    if (const auto* field = std::get_if<FieldChange>(&change))
-      return scene::sameBits(field->before, field->after);
-    const auto* world = std::get_if<WorldChange>(&change);
-    return world && world->before == world->after;
-  });
-  if (changes.empty()) return;
+void History::push(Step step) {
   for (; steps_.size() > done_; steps_.pop_back()) bytes_ -= steps_.back().bytes;
   if (saved_ && *saved_ > forgotten_ + done_) saved_.reset();  // the saved state could be redone
-  Step step{std::move(name), std::move(changes), 0};
-  for (const Change& change : step.changes) step.bytes += bytesOf(change);
+  step.bytes = sizeof(step) + step.before.bytes() + step.after.bytes();
   bytes_ += step.bytes;
   steps_.push_back(std::move(step));
   ++done_;
@@ -202,9 +209,7 @@ Replay History::undo() {
   if (done_ == 0) return {};
   const Step& step = steps_[--done_];
   Replay replay{true, step.name, {}};
-  for (auto change = step.changes.rbegin(); change != step.changes.rend(); ++change)
-    apply(*change, false, replay.missing);
-  ++version_;
+  go(step.after, step.before, replay.missing);
   return replay;
 }
 
@@ -213,33 +218,13 @@ Replay History::redo() {
   if (done_ == steps_.size()) return {};
   const Step& step = steps_[done_++];
   Replay replay{true, step.name, {}};
-  for (const Change& change : step.changes) apply(change, true, replay.missing);
-  ++version_;
+  go(step.before, step.after, replay.missing);
   return replay;
 }
 
 std::string History::undoName() const {
-  if (!current_.empty()) return "Undo " + scopes_.front().name;
+  if (edited()) return "Undo " + scopes_.front().name;
   return done_ > 0 ? "Undo " + steps_[done_ - 1].name : "Undo";
-}
-
-std::vector<std::string> History::stepNames() const {
-  std::vector<std::string> names;
-  for (const Step& step : steps_) names.push_back(step.name);
-  return names;
-}
-
-bool History::modified() const {
-  return !current_.empty() || !saved_ || *saved_ != forgotten_ + done_;
-}
-
-bool History::modifiedInside() const {
-  if (!current_.empty() || !saved_) return modified();
-  const auto saved = static_cast<std::size_t>(*saved_ - forgotten_);
-  for (std::size_t i = std::min(saved, done_); i < std::max(saved, done_); ++i)
-    for (const Change& change : steps_[i].changes)
-      if (!std::holds_alternative<OutsideChange>(change)) return true;
-  return false;
 }
 
 void History::markSaved() {
@@ -249,8 +234,6 @@ void History::markSaved() {
 
 void History::clear() {
   scopes_.clear();
-  current_.clear();
-  joinable_.clear();
   steps_.clear();
   bytes_ = 0;
   done_ = 0;
@@ -319,13 +302,15 @@ Result<void> History::setFields(std::span<const FieldEdit> edits, std::string na
     }
     infos.push_back(*info);
   }
-  beginEdit(name.empty() ? editName(document_, edits) : std::move(name));
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    scene::Value before = infos[i]->get(registry, edits[i].entity);
-    if (scene::sameBits(before, edits[i].value)) continue;  // an unchanged value must not cause work
-    run(FieldChange{document_.adopt(edits[i].entity), infos[i], std::move(before), edits[i].value});
-  }
-  endEdit();
+  make(name.empty() ? editName(document_, edits) : std::move(name), [&] {
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+      const ecs::Entity entity = edits[i].entity;
+      // An unchanged value must not cause work.
+      if (scene::sameBits(infos[i]->get(registry, entity), edits[i].value)) continue;
+      touch(entity);
+      infos[i]->restore(registry, entity, edits[i].value);
+    }
+  });
   return {};
 }
 
@@ -348,18 +333,19 @@ Result<ecs::Entity> History::create(const EntitySnapshot& snapshot) {
       if (const Result<void> good = field.check(part.values[i]); !good) return failAgain(good.error());
     }
   }
-  EntityChange change{snapshot, true};
-  if (change.snapshot.id == kNoId) change.snapshot.id = document_.newId();
-  const StableId id = change.snapshot.id;
+  EntitySnapshot made = snapshot;
+  if (made.id == kNoId) made.id = document_.newId();
   const scene::Value* label = snapshot.find("Name", "name");
-  beginEdit("creation of " + (label ? std::get<std::string>(*label) : std::string("an entity")));
-  run(std::move(change));
-  endEdit();
-  return document_.find(id);
+  ecs::Entity entity;
+  make("creation of " + (label ? std::get<std::string>(*label) : std::string("an entity")), [&] {
+    touch(made.id);
+    entity = makeEntity(document_, made);
+  });
+  return entity;
 }
 
 Result<void> History::destroy(std::span<const ecs::Entity> entities) {
-  const ecs::Registry& registry = document_.registry();
+  ecs::Registry& registry = document_.registry();
   for (const ecs::Entity entity : entities) {
     if (!registry.alive(entity)) return gone();
     document_.adopt(entity);
@@ -369,58 +355,42 @@ Result<void> History::destroy(std::span<const ecs::Entity> entities) {
   }
   if (entities.empty()) return {};
   const std::vector<ecs::Entity> all = withDescendants(registry, {entities.begin(), entities.end()});
-  beginEdit("removal of " + entitiesName(document_, entities));
-  // Entities of bundles are not destroyed: the topmost of them are first moved to the top of the world.
-  for (const ecs::Entity entity : all) {
-    if (document_.created(entity) || !document_.created(parentOf(registry, entity))) continue;
-    Result<std::vector<Change>> changes = moves(entity, {}, true);
-    if (!changes) changes = moves(entity, {}, false);
-    for (Change& change : *changes) run(std::move(change));
-  }
-  // Children are destroyed first, so that undo creates their parents first.
-  std::vector<ecs::Entity> doomed;
-  for (const ecs::Entity entity : withDescendants(registry, {entities.begin(), entities.end()}))
-    if (document_.created(entity) || document_.idOf(entity) == kNoId) doomed.push_back(entity);
-  for (auto entity = doomed.rbegin(); entity != doomed.rend(); ++entity) {
-    document_.adopt(*entity);
-    run(EntityChange{takeSnapshot(document_, *entity), false});
-  }
-  endEdit();
+  make("removal of " + entitiesName(document_, entities), [&] {
+    // Entities of bundles are not destroyed: the topmost of them are first moved to the top of the world.
+    for (const ecs::Entity entity : all) {
+      if (document_.created(entity) || !document_.created(parentOf(registry, entity))) continue;
+      const Result<scene::Transform> stays = below({}, entity, /*keep_place=*/true);
+      touch(entity);
+      registry.edit<scene::Transform>(entity) = stays ? *stays : *below({}, entity, /*keep_place=*/false);
+    }
+    std::vector<ecs::Entity> doomed;
+    for (const ecs::Entity entity : withDescendants(registry, {entities.begin(), entities.end()})) {
+      if (!document_.created(entity) && document_.idOf(entity) != kNoId) continue;
+      touch(entity);
+      doomed.push_back(entity);
+    }
+    for (const ecs::Entity entity : doomed) registry.destroy(entity);
+  });
   return {};
 }
 
-Result<std::vector<History::Change>> History::moves(ecs::Entity entity, ecs::Entity parent, bool keep_place) {
+Result<scene::Transform> History::below(ecs::Entity parent, ecs::Entity entity, bool keep_place) const {
   const ecs::Registry& registry = document_.registry();
-  std::vector<Change> changes;
-  const ecs::Entity before = parentOf(registry, entity);
-  if (before == parent) return changes;
-  const StableId id = document_.adopt(entity);
-  const StableId parent_id = parent ? document_.adopt(parent) : kNoId;
-  if (keep_place) {
-    const glm::dmat4 world_from_parent(worldFromNode(registry, parent));
-    const glm::dmat4 world_from_node(worldFromNode(registry, entity));
-    const glm::mat4 parent_from_node(glm::inverse(world_from_parent) * world_from_node);
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) {
-        if (!std::isfinite(parent_from_node[column][row]))
-          return fail(document_.nameOf(parent), "is flat: what hangs below it cannot keep its place",
-                      "give it a scale other than 0");
-      }
-    }
-    scene::Transform after = registry.get<scene::Transform>(entity);
-    scene::setLocalMatrix(after, parent_from_node);
-    for (const FieldEdit& edit : transformEdits(entity, after)) {
-      const scene::FieldInfo* info = *scene::findField(edit.component, edit.field);
-      const scene::Value now = info->get(registry, entity);
-      if (!scene::sameBits(now, edit.value)) changes.push_back(FieldChange{id, info, now, edit.value});
-    }
-  }
-  changes.push_back(ParentChange{id, document_.idOf(before), parent_id});
-  return changes;
+  scene::Transform after = registry.get<scene::Transform>(entity);
+  after.parent = parent;
+  if (!keep_place) return after;
+  const glm::dmat4 world_from_parent(worldFromNode(registry, parent));
+  const glm::dmat4 world_from_node(worldFromNode(registry, entity));
+  const glm::mat4 parent_from_node(glm::inverse(world_from_parent) * world_from_node);
+  if (!isFinite(parent_from_node))
+    return fail(document_.nameOf(parent), "is flat: what hangs below it cannot keep its place",
+                "give it a scale other than 0");
+  scene::setLocalMatrix(after, parent_from_node);
+  return after;
 }
 
 Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place) {
-  const ecs::Registry& registry = document_.registry();
+  ecs::Registry& registry = document_.registry();
   if (parent && !registry.has<scene::Transform>(parent))
     return fail(document_.nameOf(parent), "has no place that something could hang below");
   for (const ecs::Entity entity : entities) {
@@ -430,20 +400,24 @@ Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entit
       return fail(document_.nameOf(parent), fmt::format("hangs below {}, or is it", document_.nameOf(entity)),
                   "choose a parent elsewhere");
   }
-  std::vector<Change> all;
+  std::vector<std::pair<ecs::Entity, scene::Transform>> moved;
   for (const ecs::Entity entity : entities) {
     // An entity below another of the list moves with that one.
-    const bool below = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity other) {
+    const bool with_other = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity other) {
       return other != entity && isBelow(registry, entity, other);
     });
-    if (below) continue;
-    Result<std::vector<Change>> changes = moves(entity, parent, keep_place);
-    if (!changes) return failAgain(changes.error());
-    std::move(changes->begin(), changes->end(), std::back_inserter(all));
+    if (with_other || parentOf(registry, entity) == parent) continue;
+    const Result<scene::Transform> after = below(parent, entity, keep_place);
+    if (!after) return failAgain(after.error());
+    moved.emplace_back(entity, *after);
   }
-  beginEdit("new parent of " + entitiesName(document_, entities));
-  for (Change& change : all) run(std::move(change));
-  endEdit();
+  make("new parent of " + entitiesName(document_, entities), [&] {
+    if (parent && !moved.empty()) document_.adopt(parent);
+    for (const auto& [entity, after] : moved) {
+      touch(entity);
+      registry.edit<scene::Transform>(entity) = after;
+    }
+  });
   return {};
 }
 
@@ -464,34 +438,31 @@ Result<const scene::ComponentInfo*> History::changeable(ecs::Entity entity, std:
 Result<void> History::addComponent(ecs::Entity entity, std::string_view component) {
   const Result<const scene::ComponentInfo*> info = changeable(entity, component, /*has=*/false);
   if (!info) return failAgain(info.error());
-  ComponentChange change{document_.adopt(entity), {*info, {}}, true};
-  for (const scene::FieldInfo& field : (*info)->fields) change.values.values.push_back(field.default_value);
-  beginEdit(fmt::format("{} of {}", component, document_.nameOf(entity)));
-  run(std::move(change));
-  endEdit();
+  make(fmt::format("{} of {}", component, document_.nameOf(entity)), [&] {
+    touch(entity);
+    (*info)->add(document_.registry(), entity);
+  });
   return {};
 }
 
 Result<void> History::removeComponent(ecs::Entity entity, std::string_view component) {
   const Result<const scene::ComponentInfo*> info = changeable(entity, component, /*has=*/true);
   if (!info) return failAgain(info.error());
-  beginEdit(fmt::format("removal of {} from {}", component, document_.nameOf(entity)));
-  run(ComponentChange{document_.adopt(entity), componentValues(document_.registry(), entity, **info), false});
-  endEdit();
+  make(fmt::format("removal of {} from {}", component, document_.nameOf(entity)), [&] {
+    touch(entity);
+    (*info)->remove(document_.registry(), entity);
+  });
   return {};
 }
 
 void History::setWorld(WorldState world, std::string name) {
   if (world == document_.world()) return;
-  beginEdit(std::move(name));
-  run(WorldChange{document_.world(), std::move(world)});
-  endEdit();
-}
-
-void History::did(OutsideChange change, std::string name) {
-  beginEdit(std::move(name));
-  keep(std::move(change));
-  endEdit();
+  make(std::move(name), [&] {
+    ++version_;
+    std::optional<WorldState>& before = scopes_.back().before.world;
+    if (!before) before = document_.world();
+    document_.setWorld(std::move(world));
+  });
 }
 
 }  // namespace lambent::editor

@@ -1,19 +1,17 @@
 // Undoes and redoes all edits of a document. Every edit goes through this class, which checks it, carries it
-// out and stores the values before and after by StableId, component and field. Steps therefore stay valid
-// when undo creates an entity anew or a bundle is reloaded. Edits between begin() and commit() form one step;
-// a field that is set many times in it (a drag) is stored once. An error changes nothing. One thread.
+// out and keeps the entities and the world's state as they were before and after it, by StableId. Steps
+// therefore stay valid when undo creates an entity anew or a bundle is reloaded. Edits between begin() and
+// commit() form one step. An error changes nothing. One thread.
 #pragma once
 
 #include <cstddef>
 #include <deque>
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "editor/document/document.hpp"
@@ -35,13 +33,6 @@ struct Replay {
   bool done = false;  // false: there was no step
   std::string name;   // of the step
   std::vector<std::string> missing;
-};
-
-// An OutsideChange is a change of something that the document does not hold, such as which scenes are open.
-struct OutsideChange {
-  // Redoes the change if `forth`, else undoes it. Appends what is no longer possible to `missing`.
-  std::function<void(bool forth, std::vector<std::string>& missing)> carry_out;
-  std::size_t bytes = 0;  // approximate memory use
 };
 
 class History {
@@ -83,8 +74,6 @@ class History {
     change(world);
     setWorld(std::move(world), std::move(name));
   }
-  // Records a change that has just been made outside the document.
-  void did(OutsideChange change, std::string name);
 
   // ---- begin() and commit() nest; the outermost pair makes the step.
   void begin(std::string name);
@@ -99,17 +88,14 @@ class History {
   // ---- Undo and redo first commit a step that is open.
   Replay undo();
   Replay redo();
-  bool canUndo() const { return done_ > 0 || !current_.empty(); }
-  bool canRedo() const { return current_.empty() && done_ < steps_.size(); }
+  bool canUndo() const { return done_ > 0 || edited(); }
+  bool canRedo() const { return !edited() && done_ < steps_.size(); }
   std::string undoName() const;  // "Undo move of ball"; "Undo" if there is nothing to undo
   std::string redoName() const { return canRedo() ? "Redo " + steps_[done_].name : "Redo"; }
-  // Return the names of all steps, oldest first, and how many of them are done.
-  std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
 
-  // Return whether anything was edited since markSaved(), and whether by more than OutsideChanges.
-  bool modified() const;
-  bool modifiedInside() const;
+  // Returns whether anything was edited since markSaved().
+  bool modified() const { return edited() || saved_ != forgotten_ + done_; }
   void markSaved();
   void clear();  // drops all steps; the present state counts as saved
   std::size_t bytes() const { return bytes_; }
@@ -117,49 +103,51 @@ class History {
   std::uint64_t version() const { return version_; }
 
  private:
-  struct FieldChange {
-    StableId entity;
-    const scene::FieldInfo* field;
-    scene::Value before, after;
+  // The part of a document that a step touches.
+  struct State {
+    std::map<StableId, std::optional<EntitySnapshot>> entities;  // none: there is no such entity
+    std::optional<WorldState> world;
+
+    bool empty() const { return entities.empty() && !world; }
+    std::size_t bytes() const;
   };
-  struct ParentChange {
-    StableId entity, before, after;
-  };
-  struct EntityChange {
-    EntitySnapshot snapshot;
-    bool made;  // false: destroyed
-  };
-  struct ComponentChange {
-    StableId entity;
-    ComponentValues values;
-    bool added;  // false: removed
-  };
-  struct WorldChange {
-    WorldState before, after;
-  };
-  using Change =
-      std::variant<FieldChange, ParentChange, EntityChange, ComponentChange, WorldChange, OutsideChange>;
   struct Step {
     std::string name;
-    std::vector<Change> changes;
+    State before, after;  // of the same entities
     std::size_t bytes = 0;
   };
+  // A pair of begin() and commit() that is open.
   struct Scope {
     std::string name;
-    std::size_t first;  // index of its first change in current_
-    bool single;        // opened by beginEdit(): joins an enclosing step
+    State before;
   };
 
-  static std::size_t bytesOf(const Change& change);
-  // Enclose a single edit, as begin() and commit() do.
-  void beginEdit(std::string name);
-  void endEdit();
-  void run(Change change);   // carries the change out and keeps it
-  void keep(Change change);  // adds the change to the open step
-  void apply(const Change& change, bool forth, std::vector<std::string>& missing);
-  // Returns the changes that reparent an entity: of its parent and, if the place is kept, of its Transform.
-  Result<std::vector<Change>> moves(ecs::Entity entity, ecs::Entity parent, bool keep_place);
-  void push(std::string name, std::vector<Change> changes);
+  // Calls `edit`, which changes only what it has touched, as a step of its own unless one is open.
+  template <typename Edit>
+  void make(std::string name, const Edit& edit) {
+    const bool alone = scopes_.empty();
+    if (alone) begin(std::move(name));
+    edit();
+    if (alone) commit();
+  }
+  // Keeps the entity as it is before its first edit in the open scope. One without id is adopted.
+  void touch(ecs::Entity entity);
+  void touch(StableId id);
+  // Returns whether anything was edited in the step that is open.
+  bool edited() const;
+  // Returns the present state of what `before` has.
+  State now(const State& before) const;
+  // Leaves out what is the same in both.
+  static void keepDifferences(State& before, State& after);
+  // Goes from one state to the other, and leaves alone what is the same in both.
+  void go(const State& from, const State& to, std::vector<std::string>& missing);
+  void goEntity(StableId id, const std::optional<EntitySnapshot>& from,
+                const std::optional<EntitySnapshot>& to, std::vector<std::string>& missing);
+  void goParent(StableId id, const std::optional<EntitySnapshot>& from, const EntitySnapshot& to,
+                std::vector<std::string>& missing);
+  // Returns the entity's Transform below another parent.
+  Result<scene::Transform> below(ecs::Entity parent, ecs::Entity entity, bool keep_place) const;
+  void push(Step step);
   void forgetOldest();
   // Returns the component if a person may add it to the entity (has: false) or remove it from there (true).
   Result<const scene::ComponentInfo*> changeable(ecs::Entity entity, std::string_view component,
@@ -176,9 +164,6 @@ class History {
 
   std::vector<Scope> scopes_;
   bool dragging_ = false;
-  std::vector<Change> current_;
-  // The index in current_ of a field's change; later edits of the field join it.
-  std::map<std::pair<StableId, const scene::FieldInfo*>, std::size_t> joinable_;
 };
 
 // Returns edits of all fields of an entity's Transform but its parent.

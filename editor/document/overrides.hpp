@@ -16,8 +16,8 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/ecs/registry.hpp"
-#include "runtime/scene/reflection.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
 
@@ -66,7 +66,6 @@ struct EntityOverride {
   // table.
   std::vector<const scene::ComponentInfo*> components;
   std::vector<FieldOverride> fields;
-  UnknownFields unknown;  // by "Component", "Component/field" or another key, as JSON text
 };
 
 using Overrides = std::vector<EntityOverride>;

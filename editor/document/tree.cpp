@@ -24,7 +24,6 @@ namespace {
 // Returns the bundle that an entity belongs to, by its number in the running program.
 std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity entity) {
   if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) return group->bundle;
-  if (const auto* draw = registry.tryGet<scene::DrawItem>(entity)) return draw->bundle;
   if (registry.has<Created>(entity)) return std::nullopt;  // a Created camera belongs to no bundle
   for (const scene::ComponentInfo& component : scene::components()) {
     if (const auto bundle = component.bundle(registry, entity)) return bundle;
@@ -34,9 +33,7 @@ std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity
 
 // Returns the word of TreeRow::kind for an entity.
 std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
-  if (registry.has<scene::DrawItem>(entity)) return "draw";
   if (registry.has<scene::VolumeItem>(entity)) return "volume";
-  if (registry.has<scene::RigidGroupComponent>(entity)) return "group";
   // The first component that the entity has decides.
   constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
       {"Light", "light"},         {"Lamp", "lamp"},         {"Camera", "camera"},
@@ -140,10 +137,8 @@ class TreeBuilder {
 
  private:
   bool listed(ecs::Entity entity) const {
-    const bool part =
-        registry_.has<scene::DrawItem>(entity) ||
-        (registry_.has<scene::RigidGroupComponent>(entity) && !registry_.has<scene::VolumeItem>(entity));
-    if (part) return query_.show_parts;
+    if (registry_.has<scene::DrawItem>(entity)) return false;
+    if (registry_.has<scene::RigidGroupComponent>(entity)) return registry_.has<scene::VolumeItem>(entity);
     if (registry_.has<StableId>(entity)) return true;
     const auto all = scene::components();
     return std::any_of(all.begin(), all.end(), [&](const auto& row) { return row.has(registry_, entity); });
@@ -167,15 +162,10 @@ class TreeBuilder {
   ecs::Entity parentRow(ecs::Entity entity) const {
     if (registry_.has<scene::Transform>(entity)) return parentOf(registry_, entity);
     ecs::Entity parent;
-    if (const auto* draw = registry_.tryGet<scene::DrawItem>(entity)) parent = draw->node;
     if (const auto* group = registry_.tryGet<scene::RigidGroupComponent>(entity)) parent = group->node;
     if (const auto* lamp = registry_.tryGet<scene::LampComponent>(entity)) {
       const auto group = groups_.find({lamp->bundle, lamp->group});
-      if (group != groups_.end()) {
-        // A lamp stands below its group if groups are shown, else below the group's node.
-        parent = listed(group->second) ? group->second
-                                       : registry_.get<scene::RigidGroupComponent>(group->second).node;
-      }
+      if (group != groups_.end()) parent = registry_.get<scene::RigidGroupComponent>(group->second).node;
     }
     if (registry_.alive(parent)) return parent;
     if (const auto bundle = bundleOf(registry_, entity)) {
@@ -212,8 +202,6 @@ class TreeBuilder {
   std::string name(ecs::Entity entity, std::string_view kind_word) const {
     if (const auto* own = registry_.tryGet<scene::Name>(entity); own && !own->value.empty())
       return own->value;
-    if (const auto* draw = registry_.tryGet<scene::DrawItem>(entity))
-      return fmt::format("primitive {}{}", draw->primitive, draw->back ? " (back)" : "");
     return fmt::format("({})", kind_word);
   }
 
@@ -252,8 +240,8 @@ std::vector<TreeRow> treeRows(const Document& document, const TreeQuery& query) 
 
 std::uint64_t treeVersion(const ecs::Registry& registry) {
   // The version of Transforms would rise with every step of an animation, so the parents are hashed instead.
-  std::uint64_t sum = registry.version<StableId>() + registry.version<Created>() +
-                      registry.version<scene::Name>() + registry.version<scene::DrawItem>();
+  std::uint64_t sum =
+      registry.version<StableId>() + registry.version<Created>() + registry.version<scene::Name>();
   const auto mix = [&](std::uint64_t part) { sum = (sum ^ part) * 0x9e3779b97f4a7c15u + (sum >> 29); };
   for (auto [entity, place] : registry.view<scene::Transform>()) {
     mix(std::uint64_t{entity.index} << 32 | entity.generation);
@@ -369,8 +357,7 @@ scene::Box boxAround(const ecs::Registry& registry, ecs::Entity entity) {
 
 // Returns the rotation and position of an entity's node without its scale, which boxes of draws contain.
 glm::mat4 frameOf(const ecs::Registry& registry, ecs::Entity entity) {
-  const auto* draw = registry.tryGet<scene::DrawItem>(entity);
-  glm::mat4 frame = worldFromNode(registry, draw ? draw->node : entity);
+  glm::mat4 frame = worldFromNode(registry, entity);
   for (int axis = 0; axis < 3; ++axis) {
     const float length = glm::length(glm::vec3(frame[axis]));
     if (!(length > 0.0f)) return glm::mat4(1.0f);
@@ -388,8 +375,7 @@ scene::Box selectionBounds(const Document& document, const Selection& selection)
     if (registry.has<scene::RigidGroupComponent>(selected))
       bounds.add(scene::groupBounds(registry, selected));
     for (const auto [draw, item] : registry.view<const scene::DrawItem>())
-      if (draw == selected || item.node == selected || isBelow(registry, item.node, selected))
-        bounds.add(scene::drawBounds(registry, draw));
+      if (isBelow(registry, item.node, selected)) bounds.add(scene::drawBounds(registry, draw));
     if (bounds.empty() && registry.has<scene::Transform>(selected)) bounds.add(boxAround(registry, selected));
   }
   return bounds;
@@ -406,7 +392,7 @@ std::vector<TurnedBox> selectionBoxes(const Document& document, const Selection&
       turned.world_from_box = frameOf(registry, selected);
       const glm::mat4 box_from_world = glm::inverse(turned.world_from_box);
       for (const auto [draw, item] : registry.view<const scene::DrawItem>())
-        if (draw == selected || item.node == selected || isBelow(registry, item.node, selected))
+        if (isBelow(registry, item.node, selected))
           turned.box.add(
               scene::transformed(item.bounds, box_from_world * worldFromNode(registry, item.node)));
     }

@@ -1,7 +1,8 @@
 // Lists the entities of a registry as the flat rows of a tree, so that a list clipper can draw only the
 // visible ones. Nodes are ordered by Transform::parent and bundles by their roots; entities without a place
-// (draws, groups, lamps, materials, animations) stand below their node, group or bundle. Rows are rebuilt
-// when treeVersion() has changed. A filter keeps matching rows and their ancestors.
+// (lamps, volumes, materials, animations) stand below their node or bundle. Draws and rigid groups, which
+// cannot be edited, have no rows. Rows are rebuilt when treeVersion() has changed. A filter keeps matching
+// rows and their ancestors.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ struct TreeRow {
   StableId id;
   std::uint32_t depth = 0;
   std::string name;
-  // One of the words bundle, node, light, lamp, camera, draw, group, volume, animation, material, environment
-  // and entity; the icon depends on it.
+  // One of the words bundle, node, light, lamp, camera, volume, animation, material, environment and entity;
+  // the icon depends on it.
   std::string_view kind;
   bool has_children = false;
   bool open = true;
@@ -32,11 +33,10 @@ struct TreeRow {
 
 struct TreeQuery {
   // A row has to match all words: "ball" (part of the name, in any case), "type:light" (its kind), "has:Lamp"
-  // (a component), "id:0123" (a prefix of its id), "-type:draw" (not this kind). "two words" in quotes count
+  // (a component), "id:0123" (a prefix of its id), "-type:node" (not this kind). "two words" in quotes count
   // as one.
   std::string filter;
   std::set<StableId> closed;  // rows whose children are hidden; a filter shows them anyway
-  bool show_parts = true;     // whether to list draws and groups, which cannot be edited
   bool operator==(const TreeQuery&) const = default;
 };
 
@@ -92,7 +92,7 @@ class Selection {
   std::uint64_t version_ = 0;
 };
 
-// Returns a box around the selection in world space: the bounds of draws and groups, and a small box around
+// Returns a box around the selection in world space: the bounds of draws and volumes, and a small box around
 // an entity that only has a position. The box is empty if nothing selected has a position.
 scene::Box selectionBounds(const Document& document, const Selection& selection);
 
@@ -101,7 +101,7 @@ struct TurnedBox {
   glm::mat4 world_from_box{1.0f};
   scene::Box box;
 };
-// Returns a box around each selected entity, in the frame of its node or group.
+// Returns a box around each selected entity, in the frame of its node.
 std::vector<TurnedBox> selectionBoxes(const Document& document, const Selection& selection);
 
 }  // namespace lambent::editor

@@ -148,14 +148,10 @@ scene::Value Place::value(const scene::FieldInfo& field) const {
   return value;
 }
 
-UnknownFields Place::unknown(const std::set<std::string>& known, std::vector<std::string>& notices) const {
-  UnknownFields unknown;
-  for (const auto& [key, place] : members()) {
-    if (known.contains(key)) continue;
-    unknown[key] = place.json().dump();
-    notices.push_back(place.way() + " is not known to this version; it is kept as it is");
-  }
-  return unknown;
+void Place::tellUnknown(const std::set<std::string>& known, std::vector<std::string>& notices) const {
+  for (const auto& [key, place] : members())
+    if (!known.contains(key))
+      notices.push_back(place.way() + " is not known to this version; saving leaves it out");
 }
 
 namespace {
@@ -188,13 +184,6 @@ Result<ReadJson> parseJson(std::string_view text, const std::string& subject) {
     std::string why = error.what();  // "[json.exception...] parse error at line 3, column 4: ..."
     if (const auto at = why.find("] "); at != std::string::npos) why.erase(0, at + 2);
     return fail(subject, "is not JSON: " + why, "mend it there, or take an older copy");
-  }
-}
-
-void putUnknown(Json& object, const UnknownFields& unknown) {
-  for (const auto& [key, text] : unknown) {
-    Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    if (!value.is_discarded() && !object.contains(key)) object[key] = std::move(value);
   }
 }
 

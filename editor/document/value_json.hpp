@@ -54,8 +54,8 @@ class Place {
   // Returns the value of a field. Faults if its kind or range is wrong.
   scene::Value value(const scene::FieldInfo& field) const;
 
-  // Returns the members whose keys are not known, as JSON text, and adds a notice for each.
-  UnknownFields unknown(const std::set<std::string>& known, std::vector<std::string>& notices) const;
+  // Adds a notice for each member whose key is not known.
+  void tellUnknown(const std::set<std::string>& known, std::vector<std::string>& notices) const;
 
  private:
   const ReadJson* value_;
@@ -64,6 +64,5 @@ class Place {
 
 // Parses a text. An error names the line and column.
 Result<ReadJson> parseJson(std::string_view text, const std::string& subject);
-void putUnknown(Json& object, const UnknownFields& unknown);
 
 }  // namespace lambent::editor

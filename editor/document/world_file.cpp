@@ -1,7 +1,6 @@
 #include "editor/document/world_file.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -12,11 +11,12 @@
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/reflection.hpp"
-#include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
 namespace {
+
+constexpr const char* kWorldFileMark = "lambent_world";  // the key of the version
 
 const scene::ComponentInfo& environmentInfo() {
   return *scene::findComponent("Environment");
@@ -32,17 +32,11 @@ class WorldReader {
     readVersion();
     if (top_.has("bundles")) readBundles(top_.at("bundles"));
     if (top_.has("environment")) readEnvironment(top_.at("environment"));
-    if (top_.has("camera")) {
-      world_.state.camera = top_.at("camera").text();
-      if (const auto camera = spec::parseCamera(world_.state.camera); !camera)
-        top_.at("camera").fault(camera.error().problem, camera.error().hint);
-    }
     if (top_.has("settings")) world_.state.settings = top_.at("settings").table();
     if (top_.has("view")) world_.state.view = top_.at("view").table();
     if (top_.has("entities")) readEntities(top_.at("entities"));
-    UnknownFields unknown = top_.unknown(
-        {kWorldFileMark, "bundles", "environment", "camera", "settings", "view", "entities"}, world_.notices);
-    world_.unknown.merge(unknown);
+    top_.tellUnknown({kWorldFileMark, "bundles", "environment", "settings", "view", "entities"},
+                     world_.notices);
     return std::move(world_);
   }
 
@@ -70,7 +64,7 @@ class WorldReader {
         entry.instance = static_cast<std::uint32_t>(place.at("instance").count(~std::uint32_t{0}));
       if (place.has("source")) entry.source = place.at("source").text();
       if (place.has("bake_options")) entry.bake_options = place.at("bake_options").table();
-      entry.unknown = place.unknown({"path", "id", "instance", "source", "bake_options"}, world_.notices);
+      place.tellUnknown({"path", "id", "instance", "source", "bake_options"}, world_.notices);
       if (!seen.emplace(entry.id, entry.instance).second)
         place.fault(fmt::format("is \"{}\", instance {}, for the second time", entry.id, entry.instance),
                     "give it another instance number");
@@ -114,8 +108,7 @@ class WorldReader {
       if (place.has(name)) field.restore(scratch, entity, place.at(name).value(field));
     }
     world_.environment = scratch.get<scene::EnvironmentComponent>(entity);
-    for (auto& [key, value] : place.unknown(known, world_.notices))
-      world_.unknown["environment/" + key] = value;
+    place.tellUnknown(known, world_.notices);
   }
 
   void readEntities(const Place& table) {
@@ -128,8 +121,7 @@ class WorldReader {
       if (place.has("name")) entry.name = place.at("name").text();
       if (place.has("parent")) entry.parent = readParent(place.at("parent"));
       if (place.has("components")) readComponents(place.at("components"), entry);
-      UnknownFields unknown = place.unknown({"created", "name", "parent", "components"}, world_.notices);
-      entry.unknown.merge(unknown);
+      place.tellUnknown({"created", "name", "parent", "components"}, world_.notices);
       for (const FieldOverride& field : entry.fields) {
         if (entry.created && field.field->component == "Name" && field.field->name == "name")
           entry.name = std::get<std::string>(field.value);
@@ -148,32 +140,24 @@ class WorldReader {
   }
 
   void readComponents(const Place& components, EntityOverride& entry) {
-    const auto keep = [&](const std::string& key, const Place& place) {
-      entry.unknown["components/" + key] = place.json().dump();
-      world_.notices.push_back(place.way() + " is not known to this version; it is kept as it is");
-    };
-    std::vector<std::pair<const scene::ComponentInfo*, Place>> known;
-    for (const auto& [name, place] : components.members()) {
-      const scene::ComponentInfo* info = scene::findComponent(name);
-      if (!info) {
-        keep(name, place);
-        continue;
-      }
-      if (entry.created && !info->addable) place.fault("cannot be made by hand: it comes with a bundle");
-      known.emplace_back(info, place);
-    }
+    std::set<std::string> known_components;
     // The order is that of the table, whatever the file's is.
-    std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [info, place] : known) {
-      if (entry.created) entry.components.push_back(info);
-      for (const auto& [name, value] : place.members()) {
-        if (!info->field(name)) keep(std::string(info->name) + "/" + name, value);
-      }
-      for (const scene::FieldInfo& field : info->fields) {
+    for (const scene::ComponentInfo& info : scene::components()) {
+      const std::string component(info.name);
+      known_components.insert(component);
+      if (!components.has(component)) continue;
+      const Place place = components.at(component);
+      if (entry.created && !info.addable) place.fault("cannot be made by hand: it comes with a bundle");
+      if (entry.created) entry.components.push_back(&info);
+      std::set<std::string> known;
+      for (const scene::FieldInfo& field : info.fields) {
         const std::string name(field.name);
+        known.insert(name);
         if (place.has(name)) entry.fields.push_back({&field, place.at(name).value(field)});
       }
+      place.tellUnknown(known, world_.notices);
     }
+    components.tellUnknown(known_components, world_.notices);
   }
 
   Place top_;
@@ -219,22 +203,7 @@ Json bundleJson(const BundleEntry& entry) {
   json["instance"] = entry.instance;
   if (!entry.source.empty()) json["source"] = entry.source;
   if (!entry.bake_options.empty()) json["bake_options"] = table(entry.bake_options);
-  putUnknown(json, entry.unknown);
   return json;
-}
-
-UnknownFields below(const UnknownFields& all, const std::string& prefix) {
-  UnknownFields part;
-  for (const auto& [key, value] : all)
-    if (key.starts_with(prefix)) part[key.substr(prefix.size())] = value;
-  return part;
-}
-
-UnknownFields here(const UnknownFields& all) {
-  UnknownFields part;
-  for (const auto& [key, value] : all)
-    if (key.find('/') == std::string::npos) part[key] = value;
-  return part;
 }
 
 Result<Json> entityJson(const EntityOverride& entry) {
@@ -258,13 +227,7 @@ Result<Json> entityJson(const EntityOverride& entry) {
     }
     components[std::string(field.field->component)][std::string(field.field->name)] = std::move(*value);
   }
-  for (const auto& [key, text] : below(entry.unknown, "components/")) {
-    const auto slash = key.find('/');
-    Json& owner = slash == std::string::npos ? components : components[key.substr(0, slash)];
-    putUnknown(owner, {{slash == std::string::npos ? key : key.substr(slash + 1), text}});
-  }
   if (!components.empty()) json["components"] = std::move(components);
-  putUnknown(json, here(entry.unknown));
   return json;
 }
 
@@ -287,7 +250,6 @@ Result<Json> environmentJson(const WorldFile& world) {
     if (!exposure) return fail("environment.exposure", exposure.error().problem, "set it to a number");
     json["exposure"] = std::move(*exposure);
   }
-  putUnknown(json, below(world.unknown, "environment/"));
   return json;
 }
 
@@ -312,7 +274,6 @@ Result<std::string> worldText(const WorldFile& world) {
   Result<Json> environment = environmentJson(world);
   if (!environment) return failAgain(environment.error());
   json["environment"] = std::move(*environment);
-  if (!world.state.camera.empty()) json["camera"] = world.state.camera;
   json["settings"] = table(world.state.settings);
   if (!world.state.view.empty()) json["view"] = table(world.state.view);
   // The entities are sorted by id already. They are appended, because a look-up in an ordered object is
@@ -324,7 +285,6 @@ Result<std::string> worldText(const WorldFile& world) {
     entities.push_back({idText(entry.id), std::move(*entity)});
   }
   json["entities"] = std::move(entities);
-  putUnknown(json, here(world.unknown));
   std::string out;
   write(out, json, 0);
   return out + "\n";
@@ -345,38 +305,15 @@ Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& w
   return file->commit();
 }
 
-WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept) {
+WorldFile captureWorld(Document& document, const Baseline& baseline, const Overrides& awaited) {
   WorldFile world;
   world.state = document.world();
   world.entities = captureOverrides(document, baseline);
   for (auto [entity, environment] : std::as_const(document.registry()).view<scene::EnvironmentComponent>())
     world.environment = environment;
-  if (!kept) return world;
-  world.unknown = kept->unknown;
-  const auto by_id = [](const EntityOverride& a, const EntityOverride& b) { return a.id < b.id; };
-  const auto& bundles = world.state.bundles;
-  const bool all_open = std::ranges::all_of(kept->state.bundles, [&](const BundleEntry& old) {
-    return std::ranges::any_of(bundles, [&](const BundleEntry& bundle) {
-      return bundle.id == old.id && bundle.instance == old.instance;
-    });
-  });
-  Overrides more;
-  for (const EntityOverride& old : kept->entities) {
-    const auto found = std::lower_bound(world.entities.begin(), world.entities.end(), old, by_id);
-    if (found != world.entities.end() && found->id == old.id) {
-      found->unknown = old.unknown;
-    } else if (!old.created && !document.find(old.id)) {
-      // A bundle came without this entity this time, or not at all. The edit is kept while none is closed.
-      if (all_open) more.push_back(old);
-    } else if (!old.created && !old.unknown.empty()) {
-      EntityOverride& rest = more.emplace_back();
-      rest.id = old.id;
-      rest.name = old.name;
-      rest.unknown = old.unknown;
-    }
-  }
-  std::move(more.begin(), more.end(), std::back_inserter(world.entities));
-  std::sort(world.entities.begin(), world.entities.end(), by_id);
+  for (const EntityOverride& edit : awaited)
+    if (!document.find(edit.id)) world.entities.push_back(edit);
+  std::ranges::sort(world.entities, {}, &EntityOverride::id);
   return world;
 }
 

@@ -145,17 +145,6 @@ scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivo
 
 }  // namespace
 
-scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
-                               const glm::dvec3& factors) {
-  const glm::dmat3 linear{glm::mat3(target.world_from_parent)};
-  if (!invertible(linear)) return target.local;
-  const glm::dvec3 origin = originOf(target);
-  const scene::Transform scaled = movedBy(target, pivot_ws + factors * (origin - pivot_ws) - origin);
-  glm::dmat3 stretch(1.0);
-  for (int axis = 0; axis < 3; ++axis) stretch[axis][axis] = factors[axis];
-  return transformedBy(target, scaled, glm::inverse(linear) * stretch * linear);
-}
-
 std::string_view handleWord(Handle handle) {
   constexpr std::string_view kWords[] = {"none", "x", "y", "z", "yz", "zx", "xy", "screen"};
   return kWords[static_cast<std::size_t>(handle)];
@@ -174,7 +163,8 @@ glm::dvec3 Gizmo::pivot() const {
 
 glm::dmat3 Gizmo::axes() const {
   if (dragging()) return start_.axes;
-  return options.space == GizmoSpace::Local ? axesOf(targets_.back()) : glm::dmat3(1.0);
+  const bool own = options.space == GizmoSpace::Local || options.mode == GizmoMode::Scale;
+  return own ? axesOf(targets_.back()) : glm::dmat3(1.0);
 }
 
 double Gizmo::sizeMetres() const {
@@ -438,10 +428,7 @@ std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool other_snap) {
         result.push_back(turnedBy(target, start_.pivot, start_.turn_axis, turned_rad_));
         break;
       case GizmoMode::Scale:
-        // Uniform scaling is the same along all axes and needs no shear.
-        result.push_back(options.space == GizmoSpace::Local || active_ == Handle::Screen
-                             ? scaledLocally(target, start_.pivot, start_.axes, factors_)
-                             : scaledInWorld(target, start_.pivot, factors_));
+        result.push_back(scaledLocally(target, start_.pivot, start_.axes, factors_));
         break;
     }
   }

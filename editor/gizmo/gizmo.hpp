@@ -21,7 +21,8 @@
 namespace lambent::editor {
 
 enum class GizmoMode : std::uint8_t { Move, Rotate, Scale };
-enum class GizmoSpace : std::uint8_t { Local, World };  // the axes of the primary target, or of the world
+// The axes of the primary target, or of the world. Things scale along their own in any case.
+enum class GizmoSpace : std::uint8_t { Local, World };
 enum class Handle : std::uint8_t {
   None,
   X,
@@ -124,9 +125,5 @@ class Gizmo {
   double turned_rad_ = 0.0;                   // after snapping
   double turn_rad_ = 0.0, last_angle_ = 0.0;  // before snapping; the pointer's angle at the last call
 };
-
-// Scales the target along the world's axes, about a point.
-scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
-                               const glm::dvec3& factors);
 
 }  // namespace lambent::editor

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -153,17 +152,6 @@ Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32
     stroke.points = {glm::vec2(to + 0.6 * size * (along + side)), glm::vec2(to + 0.6 * size * (along - side)),
                      glm::vec2(to - 0.6 * size * (along + side)),
                      glm::vec2(to - 0.6 * size * (along - side))};
-  return stroke;
-}
-
-Stroke dot(const glm::dvec2& center, double radius, std::uint32_t color) {
-  Stroke stroke;
-  stroke.color = color;
-  stroke.filled = stroke.closed = true;
-  for (int i = 0; i < 16; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / 16;
-    stroke.points.emplace_back(center + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
-  }
   return stroke;
 }
 

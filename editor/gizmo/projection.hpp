@@ -32,12 +32,10 @@ class Projection {
   Projection(const spec::View& view, const Viewport& viewport);
 
   const Viewport& viewport() const { return viewport_; }
-  bool perspective() const { return perspective_; }
   // Returns the point's pixel, which may lie outside the viewport, or none if the point is behind the eye.
   std::optional<glm::dvec2> toScreen(const glm::dvec3& point_ws) const;
   Ray ray(const glm::dvec2& pixel) const;
   glm::dvec3 toEye(const glm::dvec3& point_ws) const;
-  glm::dvec3 eye() const { return eye_; }
   glm::dvec3 right() const { return right_; }
   glm::dvec3 up() const { return up_; }
   glm::dvec3 back() const { return back_; }
@@ -85,8 +83,6 @@ double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2
 std::vector<glm::dvec2> samplesOf(const std::vector<glm::dvec2>& points, bool filled);
 // Draws the end of an axis: an arrow head, or a box.
 Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32_t color);
-// Draws a small filled disc.
-Stroke dot(const glm::dvec2& center, double radius, std::uint32_t color);
 
 // Follows the pointer during a drag, at a tenth of its way while the user holds the key for fine movements.
 class FinePointer {

@@ -3,8 +3,6 @@
 #include <string_view>
 #include <tuple>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -41,12 +39,9 @@ bool shown(const Dialog& dialog, const DialogFile& file) {
   if (file.name.starts_with('.')) return false;
   if (file.is_folder) return true;
   if (dialog.kind == Dialog::Kind::Folder) return false;
-  if (dialog.kinds.empty() || dialog.filter > dialog.kinds.size()) return true;
-  const auto isOf = [&](const FileKind& kind) {
-    return std::ranges::any_of(kind.endings,
-                               [&](const std::string& end) { return file.name.ends_with(end); });
-  };
-  return dialog.filter == 0 ? std::ranges::any_of(dialog.kinds, isOf) : isOf(dialog.kinds[dialog.filter - 1]);
+  return dialog.endings.empty() || std::ranges::any_of(dialog.endings, [&](const std::string& ending) {
+           return file.name.ends_with(ending);
+         });
 }
 
 std::vector<DialogFile> filesOf(const Dialog& dialog) {
@@ -67,7 +62,7 @@ void list(const Session& session, Dialog& dialog) {
   if (!dialog.listed.known()) dialog.places = dialogPlacesOf(session);
   std::error_code ignored;
   const auto written = std::filesystem::last_write_time(dialog.folder, ignored);
-  if (dialog.listed.renew(dialog.folder, written, dialog.filter)) dialog.files = filesOf(dialog);
+  if (dialog.listed.renew(dialog.folder, written)) dialog.files = filesOf(dialog);
 }
 
 std::string answerOf(const Dialog& dialog) {
@@ -87,28 +82,6 @@ void drawPlaces(Dialog& dialog, Marks& marks) {
     marks.put("dialog.place." + places[i].name);
     tooltip(places[i].folder.string());
   }
-}
-
-// Returns "Scenes (.gltf .glb)" for a kind, and words for what is before the first and past the last.
-std::string filterText(const Dialog& dialog, std::size_t filter) {
-  if (filter == 0 && dialog.kinds.size() > 1) return "All that can be opened";
-  if (filter > dialog.kinds.size()) return "All files";
-  const FileKind& kind = dialog.kinds[filter == 0 ? 0 : filter - 1];
-  return fmt::format("{} ({})", kind.name, fmt::join(kind.endings, " "));
-}
-
-void drawFilter(Dialog& dialog, Marks& marks) {
-  if (dialog.kinds.empty() || dialog.kind == Dialog::Kind::Folder) return;
-  ImGui::SetNextItemWidth(-1.0f);
-  const bool open = ImGui::BeginCombo("##filter", filterText(dialog, dialog.filter).c_str());
-  marks.put("dialog.filter");
-  if (!open) return;
-  const std::size_t first = dialog.kinds.size() == 1 ? 1 : 0;  // one kind is all kinds
-  for (std::size_t i = first; i <= dialog.kinds.size() + 1; ++i) {
-    if (ImGui::Selectable(filterText(dialog, i).c_str(), i == dialog.filter)) dialog.filter = i;
-    marks.put(fmt::format("dialog.filter.{}", i));
-  }
-  ImGui::EndCombo();
 }
 
 // Returns whether a file was chosen, by a double click or by the Enter key.
@@ -144,7 +117,6 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
                                &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue))
     chosen = true;
   marks.put("dialog.name");
-  drawFilter(dialog, marks);
   // The name of a folder leads into it.
   std::error_code ignored;
   const std::filesystem::path named = answerOf(dialog);
@@ -189,14 +161,15 @@ void drawDialogs(Session& session, Marks& marks) {
   }
   yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(em(7.4f), 0.0f));
   marks.put("dialog.yes");
-  if (!dialog.third.empty()) {
+  const auto button = [&](const std::string& text, const char* mark) {
+    if (text.empty()) return false;
     ImGui::SameLine();
-    third = ImGui::Button(dialog.third.c_str(), ImVec2(em(7.4f), 0.0f));
-    marks.put("dialog.third");
-  }
-  ImGui::SameLine();
-  no = ImGui::Button(dialog.no.c_str(), ImVec2(em(7.4f), 0.0f)) || escapePressed();
-  marks.put("dialog.no");
+    const bool pressed = ImGui::Button(text.c_str(), ImVec2(em(7.4f), 0.0f));
+    marks.put(mark);
+    return pressed;
+  };
+  third = button(dialog.third, "dialog.third");
+  no = button(dialog.no, "dialog.no") || escapePressed();
   if (yes || no || third) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (!yes && !no && !third) return;

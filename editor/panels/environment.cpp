@@ -85,7 +85,7 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
 // Draws a number of a light as a step of its own. Returns whether it changed.
 bool dragOfLight(Session& session, Marks& marks, const char* label, float& number, const NumberLook& look,
                  const char* step, const std::string& mark) {
-  const bool changed = dragNumber(label, number, look, session.field_edit.number);
+  const bool changed = dragNumber(label, number, look);
   tooltip(kNumberHelp);
   asOneStep(session, step);
   marks.put(mark);
@@ -95,15 +95,12 @@ bool dragOfLight(Session& session, Marks& marks, const char* label, float& numbe
 // Draws the position of a light on the sky. Returns whether it changed.
 bool dragOnSky(Session& session, Marks& marks, float& azimuth_deg, float& elevation_deg, double highest_deg,
                const std::string& light, const std::string& mark) {
-  const double step = double{session.handles.gizmo.options.snap_deg};
-  const bool turned =
-      dragOfLight(session, marks, "azimuth", azimuth_deg,
-                  {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step},
-                  ("turn of " + light).c_str(), mark + ".azimuth");
-  return dragOfLight(
-             session, marks, "elevation", elevation_deg,
-             {.speed = 0.25, .least = -highest_deg, .most = highest_deg, .format = "%.1f°", .step = step},
-             ("height of " + light).c_str(), mark + ".elevation") ||
+  const bool turned = dragOfLight(session, marks, "azimuth", azimuth_deg,
+                                  {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°"},
+                                  ("turn of " + light).c_str(), mark + ".azimuth");
+  return dragOfLight(session, marks, "elevation", elevation_deg,
+                     {.speed = 0.25, .least = -highest_deg, .most = highest_deg, .format = "%.1f°"},
+                     ("height of " + light).c_str(), mark + ".elevation") ||
          turned;
 }
 
@@ -122,8 +119,7 @@ void drawKeyLight(Session& session, Marks& marks, std::size_t index, const KeyLi
   // The factor is edited as a colour and a strength, like radiance.
   float strength = std::max({key.factor.r, key.factor.g, key.factor.b});
   glm::vec3 tint = strength > 0.0f ? key.factor / strength : glm::vec3(1.0f);
-  bool changed = dragOfLight(session, marks, "times", strength,
-                             {.speed = 0.01, .least = 0.0, .most = 1000.0, .step = 0.1},
+  bool changed = dragOfLight(session, marks, "times", strength, {.speed = 0.01, .least = 0.0, .most = 1000.0},
                              "strength of key light", mark + ".strength");
   changed |= ImGui::ColorEdit3("tint", &tint.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of key light");
@@ -140,8 +136,7 @@ void drawKeyLights(Session& session, Marks& marks) {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Suns, lamps and windows that were found in the light from outside, and shine by shadow maps.\n"
-        "Share: of all light. With the environment selected, those of environment maps have handles on the "
-        "sky, too.");
+        "Share: of all light.");
   if (!open) return;
   const std::vector<KeyLight> keys = keyLightsOf(session);
   if (keys.empty()) return ImGui::TextDisabled("None: all light from outside is soft.");
@@ -172,13 +167,10 @@ bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::
   bool changed = ImGui::ColorEdit3("color", &color.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of light");
   marks.put(mark + ".color");
-  changed |= dragOfLight(session, marks, "radiance", strength,
-                         {.speed = 0.01 * std::max(0.1, double{strength}),
-                          .least = 0.0,
-                          .most = 1e7,
-                          .format = "%.4g",
-                          .step = 1.0},
-                         "strength of light", mark + ".radiance");
+  changed |= dragOfLight(
+      session, marks, "radiance", strength,
+      {.speed = 0.01 * std::max(0.1, double{strength}), .least = 0.0, .most = 1e7, .format = "%.4g"},
+      "strength of light", mark + ".radiance");
   if (changed) radiance = strength * color;
   return changed;
 }
@@ -187,8 +179,8 @@ void drawSun(Session& session, Marks& marks, std::size_t index, spec::SunLight s
   const std::string mark = fmt::format("environment.{}", index);
   bool changed = dragOnSky(session, marks, sun.azimuth_deg, sun.elevation_deg, 90.0, "sun", mark);
   changed |= dragOfLight(session, marks, "radius", sun.angle_deg,
-                         {.speed = 0.05, .least = 0.05, .most = 180.0, .format = "%.2f°", .step = 0.5},
-                         "size of sun", mark + ".radius");
+                         {.speed = 0.05, .least = 0.05, .most = 180.0, .format = "%.2f°"}, "size of sun",
+                         mark + ".radius");
   changed |= editRadiance(session, marks, mark, sun.radiance);
   if (changed) setWord(session, index, sunWord(sun));
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -25,91 +24,21 @@ namespace {
 
 constexpr double kFine = 0.1, kCoarse = 10.0;
 
-std::string formatted(const char* format, double number) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, number);
-  return text.data();
-}
-
-HeldNumber begun(ImGuiID widget, double shown) {
-  HeldNumber held;
-  held.widget = widget;
-  held.start = held.dragged = held.told = shown;
-  return held;
-}
-
-// Returns the format without the unit that follows the number.
-std::string withoutUnit(std::string_view format) {
-  return std::string(format.substr(0, format.find_first_of("fgd") + 1));
-}
-
-// Returns what the pointer makes of the number, and keeps the drag in `held`.
-std::optional<NumberEdit> drag(const char* label, double shown, const NumberLook& look, HeldNumber& held) {
-  ImGuiIO& io = ImGui::GetIO();
-  const ImGuiID widget = ImGui::GetID(label);
-  const bool active = ImGui::GetActiveID() == widget && held.widget == widget;
-  double number = active ? held.dragged : shown;
-  // Dear ImGui has Shift for ten times as fast and Alt for a hundredth.
-  const double factor = (io.KeyShift ? 0.1 * kFine : 1.0) * (io.KeyAlt ? 100.0 * kCoarse : 1.0);
-  const bool steps = io.KeyCtrl && look.step > 0.0;
-  const bool moved = active && held.told != held.start;
-  const char* format = look.mixed ? kMixedText : look.format;
-  std::string literal;
-  if (moved && (steps || look.mixed)) {
-    literal = look.mixed && look.scales ? formatted("× %.3g", held.told / held.start)
-              : look.mixed              ? formatted("%+.4g", held.told - held.start)
-                                        : formatted(look.format, held.told);
-    format = literal.c_str();
-  }
-  // Dear ImGui opens a text field for a press with Ctrl. A click without one does so here.
-  const bool ctrl = std::exchange(io.KeyCtrl, false);
-  ImGui::DragScalar(label, ImGuiDataType_Double, &number, static_cast<float>(look.speed * factor),
-                    &look.least, &look.most, format, ImGuiSliderFlags_NoRoundToFormat);
-  io.KeyCtrl = ctrl;
-  if (ImGui::IsItemActivated()) held = begun(widget, shown);
-  // When the button is released, the modifiers may be, too, and no longer count.
-  if (!active || ImGui::GetActiveID() != widget || ImGui::TempInputIsActive(widget)) return std::nullopt;
-  held.dragged = number;
-  double to = steps && number != held.start ? std::round(number / look.step) * look.step : number;
-  if (look.least < look.most) to = std::clamp(to, look.least, look.most);
-  if (escapePressed()) {
-    to = held.start;
-    ImGui::ClearActiveID();
-  }
-  if (to == held.told) return std::nullopt;
-  held.told = to;
-  if (look.scales && held.start != 0.0) return NumberEdit{NumberEdit::Kind::Multiply, to / held.start};
-  return NumberEdit{NumberEdit::Kind::Add, to - held.start};
-}
-
-// Returns what the typed text makes of the number, while it is typed.
-std::optional<NumberEdit> type(const char* label, double shown, const NumberLook& look, HeldNumber& held) {
-  const ImGuiID widget = ImGui::GetID(label);
-  if (held.widget != widget) held = begun(widget, shown);
-  if (held.text.empty())
-    held.text = held.typed = look.mixed ? kMixedText : formatted(withoutUnit(look.format).c_str(), shown);
-  std::string text = held.text;
-  ImGui::InputText(label, &text, ImGuiInputTextFlags_AutoSelectAll);
-  if (text == held.typed) return std::nullopt;
-  held.typed = text;
-  if (text == held.text) return NumberEdit{NumberEdit::Kind::Add, 0.0};  // Escape, or typed back
-  return parseNumberEdit(text);
-}
-
 }  // namespace
 
-std::optional<NumberEdit> dragNumber(const char* label, double shown, const NumberLook& look,
-                                     HeldNumber& held) {
-  const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
-  return typing ? type(label, shown, look, held) : drag(label, shown, look, held);
+bool dragNumber(const char* label, double& number, const NumberLook& look) {
+  const ImGuiIO& io = ImGui::GetIO();
+  // Dear ImGui has Shift for ten times as fast and Alt for a hundredth.
+  const double factor = (io.KeyShift ? 0.1 * kFine : 1.0) * (io.KeyAlt ? 100.0 * kCoarse : 1.0);
+  return ImGui::DragScalar(label, ImGuiDataType_Double, &number, static_cast<float>(look.speed * factor),
+                           &look.least, &look.most, look.mixed ? kMixedText : look.format,
+                           ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_AlwaysClamp);
 }
 
-bool dragNumber(const char* label, float& number, const NumberLook& look, HeldNumber& held) {
-  const auto edit = dragNumber(label, double{number}, look, held);
-  if (!edit) return false;
-  double to = edit->appliedTo(held.start);
-  if (look.least < look.most) to = std::clamp(to, look.least, look.most);
-  number = static_cast<float>(to);
+bool dragNumber(const char* label, float& number, const NumberLook& look) {
+  double wide = double{number};
+  if (!dragNumber(label, wide, look)) return false;
+  number = static_cast<float>(wide);
   return true;
 }
 
@@ -125,9 +54,8 @@ double unsignedZero(double value, int digits) {
 }
 
 // Returns how a number of the field is dragged and shown.
-NumberLook lookOf(const Session& session, const FieldInfo& field, double shown) {
+NumberLook lookOf(const FieldInfo& field, double shown) {
   NumberLook look;
-  look.step = stepOf(session, field, shown);
   const bool angle = field.unit == "rad" || field.kind == scene::ValueKind::Rotation;
   if (isStrengthOfLight(field)) {
     // Lights are compared by ratios.
@@ -139,11 +67,7 @@ NumberLook lookOf(const Session& session, const FieldInfo& field, double shown) 
   }
   if (angle) look.speed = 0.5;
   if (field.kind == scene::ValueKind::Vector || field.kind == scene::ValueKind::Rotation) return look;
-  if (field.kind == scene::ValueKind::Whole) look.speed = 0.1;
-  look.format = field.kind == scene::ValueKind::Whole ? "%.0f"
-                : angle                               ? "%.1f°"
-                : field.unit == "m"                   ? "%.3f m"
-                                                      : "%.4g";
+  look.format = angle ? "%.1f°" : field.unit == "m" ? "%.3f m" : "%.4g";
   if (field.range) {
     const double to_shown = angle ? double{glm::degrees(1.0f)} : 1.0;
     look.least = to_shown * double{field.range->least}, look.most = to_shown * double{field.range->greatest};
@@ -174,44 +98,22 @@ struct FieldRow {
   std::string mark() const { return fmt::format("inspector.{}.{}", field.component, field.name); }
 };
 
-// Returns the values after an edit of one of their numbers. It is relative to the values at the beginning of
-// the drag.
-std::vector<Value> valuesAfter(Session& session, const FieldRow& row, std::size_t channel,
-                               const NumberEdit& edit) {
-  FieldEditState& state = session.field_edit;
-  std::vector<Value> values = row.values;
-  if (state.field.values.size() != values.size()) return values;  // others were selected meanwhile
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    std::vector<double> numbers = state.field.numbers[i];
-    numbers[channel] = edit.appliedTo(numbers[channel]);
-    const bool as_before = numbers[channel] == state.field.numbers[i][channel];
-    values[i] = as_before ? state.field.values[i] : valueOf(session, row.field, row.entities[i], numbers);
-    const auto* rotation = std::get_if<glm::quat>(&values[i]);
-    if (rotation && row.entities[i] == row.primary())
-      state.angles = {*rotation, glm::vec3(numbers[0], numbers[1], numbers[2])};
-  }
-  return values;
-}
-
-// Edits the numbers of a field, which lie beside each other. Returns the values of all entities if they
-// changed.
+// Edits the numbers of a field, which lie beside each other. A drag shifts or scales those of all entities by
+// the same, and a typed number sets them alike. Returns the values of all entities if they changed.
 std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, const FieldRow& row) {
   constexpr std::array kAxes = {".x", ".y", ".z"};
-  FieldEditState& state = session.field_edit;
   std::vector<std::vector<double>> numbers;
   for (std::size_t i = 0; i < row.values.size(); ++i)
     numbers.push_back(numbersOf(session, row.field, row.entities[i], row.values[i]));
-  const std::vector<double>& shown = numbers.back();
-  if (const auto* rotation = std::get_if<glm::quat>(&row.values.back()))
-    state.angles = {*rotation, glm::vec3(shown[0], shown[1], shown[2])};
+  const std::vector<double> shown = numbers.back();
   const float spacing = ImGui::GetStyle().ItemInnerSpacing.x;
   const auto count = static_cast<float>(shown.size());
   const float width = (ImGui::CalcItemWidth() - (count - 1.0f) * spacing) / count;
   const int digits = row.field.kind == scene::ValueKind::Rotation ? 1 : 3;
-  std::optional<std::vector<Value>> after;
+  bool changed = false;
   ImGui::BeginGroup();
   for (std::size_t channel = 0; channel < shown.size(); ++channel) {
-    NumberLook look = lookOf(session, row.field, shown[channel]);
+    NumberLook look = lookOf(row.field, shown[channel]);
     if (shown.size() > 1) look.format = formatOfThree(shown, width, digits);
     // Rotations of the same angles differ in their last bits.
     const double same = row.field.kind == scene::ValueKind::Rotation ? 1e-3 : 0.0;
@@ -221,15 +123,28 @@ std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, co
     ImGui::PushID(static_cast<int>(channel));
     if (channel > 0) ImGui::SameLine(0.0f, spacing);
     ImGui::SetNextItemWidth(std::max(1.0f, width));
-    const int zero_digits = shown.size() > 1 ? look.format[2] - '0' : 6;
-    if (const auto edit =
-            dragNumber("##value", unsignedZero(shown[channel], zero_digits), look, state.number))
-      after = valuesAfter(session, row, channel, *edit);
+    const double from = unsignedZero(shown[channel], shown.size() > 1 ? look.format[2] - '0' : 6);
+    double to = from;
+    if (dragNumber("##value", to, look)) {
+      const bool typed = ImGui::TempInputIsActive(ImGui::GetID("##value"));
+      for (std::vector<double>& own : numbers)
+        own[channel] = typed                        ? to
+                       : look.scales && from != 0.0 ? own[channel] * (to / from)
+                                                    : own[channel] + (to - from);
+      changed = true;
+    }
     if (shown.size() > 1) marks.put(row.mark() + kAxes[channel]);
     ImGui::PopID();
   }
   ImGui::EndGroup();
-  if (ImGui::IsItemActivated()) state.field = {row.values, std::move(numbers)};
+  if (!changed) return std::nullopt;
+  std::vector<Value> after;
+  if (row.field.kind == scene::ValueKind::Rotation) session.angles.clear();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    after.push_back(valueOf(session, row.field, row.entities[i], numbers[i]));
+    if (const auto* rotation = std::get_if<glm::quat>(&after.back()))
+      session.angles.push_back({*rotation, glm::vec3(numbers[i][0], numbers[i][1], numbers[i][2])});
+  }
   return after;
 }
 

@@ -16,14 +16,12 @@ namespace lambent::editor {
 
 namespace {
 
-// Returns the materials of a draw, or of all draws at and below a node, each once. They are none for other
-// entities.
+// Returns the materials of all draws at and below a node, each once. They are none for other entities.
 std::vector<ecs::Entity> materialsOf(const Session& session, ecs::Entity object) {
   const ecs::Registry& registry = session.document.registry();
   std::vector<ecs::Entity> found;
   for (const auto [draw, item] : registry.view<const scene::DrawItem>()) {
-    if (draw != object && item.node != object && !isBelow(registry, item.node, object)) continue;
-    if (item.material < 0) continue;
+    if (item.material < 0 || !isBelow(registry, item.node, object)) continue;
     const ecs::Entity material =
         session.stage.world().instance(item.bundle).materials[static_cast<std::size_t>(item.material)];
     if (std::ranges::find(found, material) == found.end()) found.push_back(material);
@@ -83,32 +81,6 @@ void drawObjectMaterials(Session& session, Marks& marks, ecs::Entity object) {
   }
 }
 
-void drawPrimitive(Session& session, Marks& marks, ecs::Entity draw) {
-  const auto* item = session.document.registry().tryGet<scene::DrawItem>(draw);
-  if (!item) return;
-  const bool open = ImGui::CollapsingHeader("Primitive", ImGuiTreeNodeFlags_DefaultOpen);
-  marks.put("inspector.primitive");
-  if (!open || !beginFieldTable("primitive")) return;
-  const bundle::Description& description = session.stage.world().description(item->bundle);
-  const bundle::Mesh& mesh = description.meshes[item->mesh];
-  const bundle::Primitive& primitive = mesh.primitives[item->primitive];
-  const transfer::Form form = description.draws[item->draw].form();
-  const auto row = [](std::string_view label, std::string_view help, const std::string& value) {
-    beginFieldRow(label, help);
-    fittedText(value);
-  };
-  row("Node", "It moves with this node", session.document.nameOf(item->node));
-  row("Mesh", "", mesh.name.empty() ? fmt::format("number {}", item->mesh) : mesh.name);
-  row("Vertices", "", std::to_string(primitive.vertex_count));
-  row("Triangles", "", std::to_string(primitive.index_count / 3));
-  row("Light", "Where the light that was baked is evaluated",
-      form == transfer::Form::Matrix         ? "glossy, per pixel"
-      : form == transfer::Form::NormalMapped ? "diffuse, per pixel by its normal map"
-                                             : "diffuse, at its vertices");
-  if (item->back) row("Side", "Of a double-sided surface", "back");
-  ImGui::EndTable();
-}
-
 using scene::ComponentInfo;
 
 bool allCreated(const Session& session, std::span<const ecs::Entity> entities) {
@@ -119,9 +91,6 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
                        std::span<const ecs::Entity> entities) {
   if (!ImGui::BeginPopupContextItem()) return;
   const std::string name(component.name);
-  if (ImGui::MenuItem("Copy")) runOrLog(session, "copy", std::array{name});
-  if (ImGui::MenuItem("Paste", nullptr, false, session.clipboard.component.has_value()))
-    runOrLog(session, "paste", {});
   if (ImGui::MenuItem("Reset")) runOrLog(session, "reset", std::array{name});
   if (component.removable && allCreated(session, entities) && ImGui::MenuItem("Remove")) {
     session.history.begin(
@@ -189,16 +158,12 @@ void drawRebake(Session& session, Marks& marks, std::size_t entry, const std::ve
 }
 
 void drawSelected(Session& session, Marks& marks, const std::vector<ecs::Entity>& selected) {
-  const auto* draw = session.document.registry().tryGet<scene::DrawItem>(selected.back());
-  const std::string name =
-      draw ? fmt::format("primitive {} of {}", draw->primitive, session.document.nameOf(draw->node))
-           : session.document.nameOf(selected.back());
+  const std::string name = session.document.nameOf(selected.back());
   fittedText(dimmed(),
              selected.size() == 1 ? name : fmt::format("{} and {} more", name, selected.size() - 1));
   marks.put("inspector.name");
   for (const ComponentInfo& component : scene::components())
     drawComponent(session, marks, component, selected);
-  drawPrimitive(session, marks, selected.back());
   drawObjectMaterials(session, marks, selected.back());
   drawAdd(session, marks, selected);
 }

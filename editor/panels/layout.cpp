@@ -21,11 +21,7 @@ constexpr std::array kPanels = {
           &drawEnvironment},
     Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
     Panel{"Bakes", Dock::Bottom, "What is being baked, how far, and what came of it", &drawBakes},
-    Panel{"Assets", Dock::Bottom, "Environment maps, scenes, bundles and worlds to use or open", &drawAssets},
     Panel{"Cost", Dock::Bottom, "What ran in the last frame, how long it took, and why", &drawCost},
-    Panel{"Streaming", Dock::Bottom, "What is on the GPU, what is on its way, how even frames are",
-          &drawStreaming},
-    Panel{"History", Dock::Bottom, "The steps that undo takes back; a click goes there", &drawHistory},
     Panel{"Log", Dock::Bottom, "Notices and errors", &drawLog},
 };
 
@@ -107,6 +103,7 @@ void raisePanel(Session& session, const std::string& name) {
     dock.shown = true;
     layout.view_only = false;
     session.window.raise_tabs = true;
+    session.viewing.changed = true;  // the tab opens in the next frame
     return;
   }
   session.log.warn("there is no panel \"" + name + "\"");
@@ -147,6 +144,7 @@ std::span<const Panel> panelList() {
 
 void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   drawMenus(session, marks);
+  if (session.log.takeNewErrors()) session.window.wanted_panels.emplace_back("Log");
   for (const std::string& wanted : std::exchange(session.window.wanted_panels, {}))
     raisePanel(session, wanted);
   const float top = ImGui::GetFrameHeight();
@@ -199,9 +197,6 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   if (has_bottom) drawDock(session, marks, Dock::Bottom, bottom_area);
   session.window.raise_tabs = false;
   drawDialogs(session, marks);
-  drawKeys(session, marks);
-  drawPalette(session, marks);
-  drawToasts(session, marks, {{left, top}, {left + middle, top + height - bottom}});
 }
 
 }  // namespace lambent::editor

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
-#include <imgui_stdlib.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
@@ -190,13 +189,11 @@ void drawCommand(Session& session, Marks& marks, const char* id, const char* tex
   tooltip(fmt::format("{} ({})\n{}{}", command->title, command->shortcut, command->help, more));
 }
 
-void drawStep(Session& session, Marks& marks, const char* name, float& step, const char* format,
-              double most) {
+void drawStep(Marks& marks, const char* name, float& step, const char* format, double most) {
   ImGui::SetNextItemWidth(em(kStepEms));
   const std::string id = fmt::format("##{}", name);
   dragNumber(id.c_str(), step,
-             {.speed = 0.005 * double{step}, .least = 0.001, .most = most, .format = format, .step = 0.05},
-             session.field_edit.number);
+             {.speed = 0.005 * double{step}, .least = 0.001, .most = most, .format = format});
   marks.put(fmt::format("tool.snap.{}", name));
   tooltip(fmt::format("Step of a drag that snaps\n{}", kNumberHelp));
 }
@@ -220,118 +217,10 @@ void drawToolBar(Session& session, Marks& marks) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "snap", "Snap");
   }
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "metres", options.snap_m, "%.3g m", 1e3);
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "degrees", options.snap_deg, "%.3g°", 180.0);
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "factor", options.snap_scale, "× %.3g", 10.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "metres", options.snap_m, "%.3g m", 1e3);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "degrees", options.snap_deg, "%.3g°", 180.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "factor", options.snap_scale, "× %.3g", 10.0);
   ImGui::EndGroup();
-}
-
-namespace {
-
-using KeyRow = std::pair<const char*, const char*>;
-
-constexpr std::array kPointer = {
-    KeyRow{"Middle drag", "Orbit; also Alt and the left button"},
-    KeyRow{"Shift+middle", "Pan"},
-    KeyRow{"Wheel", "Nearer, farther"},
-    KeyRow{"Right drag", "Look around"},
-    KeyRow{"Right+WASDQE", "Fly; with Shift faster"},
-    KeyRow{"Right click", "Menu of the selection"},
-    KeyRow{"Click", "Select; with Ctrl or Shift several"},
-    KeyRow{"Shift+drag", "Finer: numbers, handles"},
-    KeyRow{"Ctrl+drag", "In steps, or freely"},
-    KeyRow{"Alt+drag", "Coarser: numbers"},
-    KeyRow{"Double click", "In the tree: frame"},
-};
-
-}  // namespace
-
-void drawKeys(Session& session, Marks& marks) {
-  if (!session.window.keys) return;
-  constexpr const char* kTitle = "Keys and pointer";
-  if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize(ImVec2(std::min(em(32.0f), 0.96f * screen.x), 0.92f * screen.y));
-  ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-  bool open = true;
-  if (!ImGui::BeginPopupModal(kTitle, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
-    return;
-  ImGui::BeginChild("keys", ImVec2(0.0f, -1.5f * ImGui::GetFrameHeight()));
-  if (beginFieldTable("keys", 0.3f)) {
-    const auto row = [](const char* key, const char* what) {
-      beginFieldRow(key, {});
-      fittedText(what);
-    };
-    for (const Command& command : commandList())
-      if (*command.shortcut != '\0') row(command.shortcut, command.title);
-    for (const auto& [input, what] : kPointer) row(input, what);
-    ImGui::EndTable();
-  }
-  ImGui::EndChild();
-  const bool close = ImGui::Button("Close", ImVec2(em(7.4f), 0.0f)) || escapePressed();
-  marks.put("keys.close");
-  if (close || !open) {
-    session.window.keys = false;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
-}
-
-namespace {
-
-bool matches(const Command& command, const std::string& words) {
-  return holdsWords(std::string(command.title) + ' ' + command.menu + ' ' + command.help + ' ' + command.id,
-                    words);
-}
-
-void runAndClose(Session& session, const Command& command) {
-  session.window.palette = false;
-  ImGui::CloseCurrentPopup();
-  runOrLog(session, command.id, {});
-}
-
-}  // namespace
-
-void drawPalette(Session& session, Marks& marks) {
-  if (!session.window.palette) return;
-  constexpr const char* kId = "palette";
-  const bool opens = !ImGui::IsPopupOpen(kId);
-  if (opens) ImGui::OpenPopup(kId);
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.12f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
-  ImGui::SetNextWindowSize(ImVec2(std::min(em(34.0f), 0.96f * screen.x), 0.6f * screen.y));
-  if (!ImGui::BeginPopup(kId)) {
-    session.window.palette = false;  // it was closed by a click elsewhere
-    return;
-  }
-  if (opens) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(-1.0f);
-  const bool enter = ImGui::InputTextWithHint("##words", "words of a command", &session.window.palette_words,
-                                              ImGuiInputTextFlags_EnterReturnsTrue);
-  marks.put("palette.words");
-  ImGui::BeginChild("commands");
-  bool first = true;
-  for (const Command& command : commandList()) {
-    if (*command.title == '\0' || *command.title == '-') continue;
-    if (command.enabled && !command.enabled(session)) continue;
-    if (!matches(command, session.window.palette_words)) continue;
-    const bool chosen = (first && enter) || ImGui::Selectable(command.title, first);
-    marks.put(std::string("palette.") + command.id);
-    tooltip(command.help);
-    ImGui::SameLine(em(18.0f));
-    ImGui::TextDisabled("%s   %s", command.menu, command.shortcut);
-    first = false;
-    if (chosen) {
-      runAndClose(session, command);
-      break;
-    }
-  }
-  ImGui::EndChild();
-  if (escapePressed()) {
-    session.window.palette = false;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
 }
 
 }  // namespace lambent::editor

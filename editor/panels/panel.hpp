@@ -39,10 +39,7 @@ void drawEnvironment(Session& session, Marks& marks);
 void drawExposure(Session& session, Marks& marks, const std::string& mark);
 void drawSettings(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
-void drawAssets(Session& session, Marks& marks);
 void drawCost(Session& session, Marks& marks);
-void drawStreaming(Session& session, Marks& marks);
-void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
 // Draws the window's contents: panels in docks on each side and below, the view in the middle, and edges
@@ -52,12 +49,9 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks);
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
-void drawToolBar(Session& session, Marks& marks);                        // above the view
-void drawToasts(Session& session, Marks& marks, const Rectangle& view);  // in the view's lower right corner
+void drawToolBar(Session& session, Marks& marks);    // above the view
 void drawStartPage(Session& session, Marks& marks);  // in the view while the world is empty
 void drawDialogs(Session& session, Marks& marks);
-void drawKeys(Session& session, Marks& marks);
-void drawPalette(Session& session, Marks& marks);
 // Draws the items of a menu about what is selected, for rows of the tree and the view.
 void drawSelectionMenu(Session& session, Marks& marks);
 
@@ -85,23 +79,17 @@ struct NumberLook {
   double speed = 0.01;             // for a pixel of a drag
   double least = 0.0, most = 0.0;  // equal: no limits
   const char* format = "%.3f";     // of printf
-  double step = 0.1;               // with Ctrl
   bool mixed = false;              // the selected ones differ: shows a dash
   bool scales = false;             // a drag multiplies, so that several keep their ratios
 };
 
-// Draws a number that is dragged or typed, with the modifiers that the gizmos have, too: Shift is finer, Ctrl
-// goes in steps, Alt is coarser. A click opens a text field (session/field_numbers.hpp). The
-// edit is returned, not applied, so that it can reach several entities. It is relative to the number that was
-// shown when the widget became active. It is returned again whenever it changes.
-std::optional<NumberEdit> dragNumber(const char* label, double shown, const NumberLook& look,
-                                     HeldNumber& held);
-// The same for a single number, to which the edit is applied. Returns whether it changed.
-bool dragNumber(const char* label, float& number, const NumberLook& look, HeldNumber& held);
+// Draw a number that is dragged or typed: Shift is finer, as for gizmos, Alt is coarser, and a click opens a
+// text field. Return whether it changed.
+bool dragNumber(const char* label, double& number, const NumberLook& look);
+bool dragNumber(const char* label, float& number, const NumberLook& look);
 
 // Tooltips of numbers end in this.
-inline constexpr const char* kNumberHelp =
-    "Drag; Shift: finer, Alt: coarser, Ctrl: in steps. Click to type: 2.5, +=1, *2";
+inline constexpr const char* kNumberHelp = "Drag; Shift: finer, Alt: coarser. Click to type";
 // Stands for values that differ.
 inline constexpr const char* kMixedText = "—";
 
@@ -122,7 +110,5 @@ void beginFieldRow(std::string_view label, std::string_view help);
 void asOneStep(Session& session, const char* name);
 // Logs why an edit was refused, if it was.
 void logRefusal(Session& session, const Result<void>& done);
-
-inline constexpr const char* kDraggedAsset = "asset";  // the type of what a dragged tile carries: its path
 
 }  // namespace lambent::editor

@@ -23,8 +23,7 @@ struct KindLook {
 constexpr KindLook kLooks[] = {
     {"bundle", "B", IM_COL32(220, 160, 80, 255)},      {"node", "n", IM_COL32(150, 150, 150, 255)},
     {"light", "L", IM_COL32(250, 220, 110, 255)},      {"lamp", "L", IM_COL32(250, 190, 110, 255)},
-    {"camera", "C", IM_COL32(130, 180, 240, 255)},     {"draw", "d", IM_COL32(120, 160, 120, 255)},
-    {"group", "G", IM_COL32(150, 210, 150, 255)},      {"volume", "V", IM_COL32(180, 170, 230, 255)},
+    {"camera", "C", IM_COL32(130, 180, 240, 255)},     {"volume", "V", IM_COL32(180, 170, 230, 255)},
     {"animation", "A", IM_COL32(230, 140, 180, 255)},  {"material", "M", IM_COL32(120, 200, 200, 255)},
     {"environment", "E", IM_COL32(120, 170, 250, 255)}};
 
@@ -163,10 +162,6 @@ void drawSceneTree(Session& session, Marks& marks) {
   ImGui::InputTextWithHint("##search", "search", &query.filter);
   marks.put("scene.search");
   tooltip("Part of a name, as ball; a kind, as type:light; a component, as has:Lamp");
-  ImGui::Checkbox("parts", &query.show_parts);
-  marks.put("scene.parts");
-  tooltip("Also show primitives and rigid groups, which cannot be edited");
-  ImGui::SameLine();
   fittedText(dimmed(), fmt::format("{} selected", session.selection.ids().size()));
   const std::vector<TreeRow>& rows = session.tree.of(session.document);
   ImGui::BeginChild("rows");

@@ -84,21 +84,6 @@ void drawQuality(Session& session, Marks& marks) {
   }
 }
 
-// Draws the axis and position of the slice through neighborhoods.
-void drawSlice(Session& session, Marks& marks) {
-  constexpr std::array kAxes = {"x", "y", "z"};
-  frame::NeighborhoodSlice& slice = session.viewing.overlays.slice;
-  beginFieldRow("Slice across", "Axis of the slice through what bodies change around them");
-  ImGui::SetNextItemWidth(-1.0f);
-  bool changed = ImGui::Combo("##axis", &slice.axis, kAxes.data(), static_cast<int>(kAxes.size()));
-  marks.put("slice.axis");
-  beginFieldRow("Place of the slice", "");
-  ImGui::SetNextItemWidth(-1.0f);
-  changed |= ImGui::SliderFloat("##place", &slice.position, 0.0f, 1.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-  marks.put("slice.position");
-  if (changed) session.viewing.changed = true;
-}
-
 // Returns what a setting costs at its present value and at its finest.
 std::string costText(const frame::SettingCost& cost) {
   const auto milliseconds = [](const frame::SettingPoint& point) {
@@ -127,7 +112,6 @@ void drawRows(Session& session, Marks& marks) {
                          ImGuiSliderFlags_AlwaysClamp))
     session.viewing.changed = true;
   marks.put("setting.pixels");
-  if (session.viewing.overlays.neighborhoods) drawSlice(session, marks);
 }
 
 }  // namespace

@@ -43,15 +43,6 @@ void setTransforms(Session& session, const std::vector<ecs::Entity>& entities,
   if (!edits.empty()) logRefusal(session, session.history.setFields(edits));
 }
 
-void setLight(Session& session, ecs::Entity entity, const scene::LocalLightComponent& to) {
-  const FieldEdit edits[] = {{entity, "Light", "strength", to.strength},
-                             {entity, "Light", "radius", to.radius_m},
-                             {entity, "Light", "range", to.range_m},
-                             {entity, "Light", "inner_cone", to.inner_cone_rad},
-                             {entity, "Light", "outer_cone", to.outer_cone_rad}};
-  logRefusal(session, session.history.setFields(edits));
-}
-
 std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
   const ecs::Registry& registry = session.document.registry();
   std::vector<GizmoTarget> targets;
@@ -63,23 +54,13 @@ std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs
   return targets;
 }
 
-void markHandles(const Session& session, Marks& marks, const std::vector<SunOnSky>& suns) {
+void markHandles(const Session& session, Marks& marks) {
   const auto mark = [&](const std::string& name, const std::optional<glm::vec2>& at) {
     if (at) marks.put(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
   };
   for (const Handle handle : kHandles)
     mark("gizmo." + std::string(handleWord(handle)), session.handles.gizmo.handleScreenPoint(handle));
-  for (const LightHandle handle : kLightHandles)
-    mark("light." + std::string(lightHandleWord(handle)),
-         session.handles.light_gizmo.handleScreenPoint(handle));
   mark("gizmo.pivot", session.handles.gizmo.pivotScreenPoint());
-  for (std::size_t sun = 0; sun < session.handles.sun_gizmo.count(); ++sun)
-    if (const auto at = session.handles.sun_gizmo.place(sun)) {
-      if (sun < suns.size() && suns[sun].key)
-        mark(fmt::format("key.{}.handle", *suns[sun].key), at->pixel);
-      else
-        mark(sun == 0 ? "sun.handle" : fmt::format("sun.handle.{}", sun + 1), at->pixel);
-    }
 }
 
 void addReadout(const glm::vec2& pixel, const std::string& text) {
@@ -88,10 +69,10 @@ void addReadout(const glm::vec2& pixel, const std::string& text) {
                                         text.c_str());
 }
 
-// Handles the pointer in the view, except for the camera: it picks entities, drags the handles of the
-// selection and of lights, and drags suns over the sky. Every drag is one step of the history. Call it right
-// after the view's own widget. Returns the pixel at which the user clicked to pick something, from the view's
-// top left corner, or none if there was no such click.
+// Handles the pointer in the view, except for the camera: it picks entities and drags the handles of the
+// selection. Every drag is one step of the history. Call it right after the view's own widget. Returns the
+// pixel at which the user clicked to pick something, from the view's top left corner, or none if there was no
+// such click.
 std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered) {
   Handles& handles = session.handles;
   if (!handles.shown) return std::nullopt;
@@ -102,62 +83,31 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
   std::vector<ecs::Entity> entities = session.selection.topmost(session.document);
   std::erase_if(entities, [&](ecs::Entity entity) { return !registry.has<scene::Transform>(entity); });
   Gizmo& gizmo = handles.gizmo;
-  LightGizmo& light_gizmo = handles.light_gizmo;
   gizmo.setView(view, viewport);
-  light_gizmo.setView(view, viewport);
   gizmo.setTargets(targetsOf(session, entities));
-  const ecs::Entity primary = session.selection.primaryEntity(session.document);
-  const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
-  const bool light_handles = light && registry.has<scene::Transform>(primary);
-  if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
-  SunGizmo& sun_gizmo = handles.sun_gizmo;
-  const std::vector<SunOnSky> suns = sunsOf(session);
-  sun_gizmo.setView(view, viewport);
-  std::vector<glm::vec3> towards;
-  for (const SunOnSky& sun : suns) towards.push_back(sun.towards_ws);
-  sun_gizmo.setSuns(std::move(towards));
 
   std::optional<glm::vec2> clicked;
   const bool eye_moves = io.KeyAlt;
-  const auto dragging = [&] { return gizmo.dragging() || light_gizmo.dragging() || sun_gizmo.dragging(); };
-  const auto release = [&] { gizmo.release(), light_gizmo.release(), sun_gizmo.release(); };
-  if (hovered && !dragging()) {
-    gizmo.hover(pixel);
-    sun_gizmo.hover(pixel);
-    if (light_handles) light_gizmo.hover(pixel);
-  }
+  if (hovered && !gizmo.dragging()) gizmo.hover(pixel);
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
     handles.pointer.press(pixel);
-    if (sun_gizmo.press(pixel)) {
-      handles.sun_taken = suns[*sun_gizmo.active()];
-      if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
-      session.history.begin("turn of " + handles.sun_taken->name);
-    } else if (light_handles && light_gizmo.press(pixel)) {
-      session.history.begin("light of " + session.document.nameOf(primary));
-    } else if (gizmo.press(pixel)) {
+    if (gizmo.press(pixel)) {
       session.history.begin(fmt::format("{} of {}",
                                         gizmo.options.mode == GizmoMode::Move     ? "move"
                                         : gizmo.options.mode == GizmoMode::Rotate ? "turn"
                                                                                   : "scale",
-                                        session.document.nameOf(primary)));
+                                        entitiesName(session.document, entities)));
     }
   }
-  if (dragging()) {
+  if (gizmo.dragging()) {
     const glm::vec2 at = handles.pointer.moved(pixel, /*fine=*/io.KeyShift);
     if (escapePressed()) {
-      release();
+      gizmo.release();
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-      if (sun_gizmo.dragging()) {
-        // A click without a drag does not move a sun that is at the border.
-        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(at));
-      } else if (light_gizmo.dragging()) {
-        setLight(session, primary, light_gizmo.drag(at));
-      } else {
-        setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
-      }
+      setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
     } else {
-      release();
+      gizmo.release();
       session.history.commit();
     }
   } else if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !eye_moves &&
@@ -165,11 +115,8 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     clicked = pixel - glm::vec2(viewport.x, viewport.y);
   }
   paint(gizmo.paint(), viewport);
-  if (light_handles) paint(light_gizmo.paint(), viewport);
-  paint(sun_gizmo.paint(), viewport);
   addReadout(pixel, gizmo.readout());
-  if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
-  markHandles(session, marks, suns);
+  markHandles(session, marks);
   return clicked;
 }
 
@@ -298,14 +245,6 @@ void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
     session.selection.set(id);
 }
 
-// Takes an asset that is dropped onto the last widget.
-void takeAsset(Session& session) {
-  if (!ImGui::BeginDragDropTarget()) return;
-  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kDraggedAsset))
-    runOrLog(session, "use-asset", std::array{std::string(static_cast<const char*>(payload->Data))});
-  ImGui::EndDragDropTarget();
-}
-
 // Draws the menu that a right click in the view opens. A drag with that button looks around and opens none.
 void drawViewMenu(Session& session, Marks& marks) {
   const bool clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Right) && session.viewing.hovered &&
@@ -334,7 +273,6 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   marks.put("viewport");
-  takeAsset(session);
   const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
   const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);

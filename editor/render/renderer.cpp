@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "editor/document/tree.hpp"
 #include "editor/session/viewing.hpp"
-#include "runtime/effects/volume/volume.hpp"
+#include "runtime/frame/frame_parts.hpp"
 
 namespace lambent::editor {
 
@@ -52,31 +51,13 @@ std::optional<PictureClock::Time> PictureClock::take() {
 
 namespace {
 
-// Returns the resident groups that hold anything that is selected.
-std::vector<std::uint32_t> selectedGroups(const Session& session) {
-  std::vector<std::uint32_t> found;
-  const ecs::Registry& registry = session.document.registry();
-  const std::vector<ecs::Entity> selected = session.selection.entities(session.document);
-  const auto& groups = session.stage.world().residency().groups();
-  const auto add = [&](const scene::RigidGroupComponent& group) {
-    for (std::uint32_t i = 0; i < groups.size(); ++i)
-      if (groups[i].bundle == group.bundle && groups[i].index.value == group.group) found.push_back(i);
-  };
-  for (const ecs::Entity entity : selected)
-    if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
-  for (const auto [draw, item] : registry.view<const scene::DrawItem>())
-    for (const ecs::Entity entity : selected)
-      if (draw == entity || isBelow(registry, item.node, entity))
-        if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
-  return found;
-}
-
 // Returns the overlays that are asked for, with boxes around what is selected.
 frame::OverlayOptions overlaysOf(const Session& session) {
   frame::OverlayOptions overlays = session.viewing.overlays;
-  if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups(session);
-  overlays.key = session.viewing.key_at_hand;
   if (!session.handles.shown) return overlays;
+  // A light that is selected shows its size and cones.
+  const ecs::Entity primary = session.selection.primaryEntity(session.document);
+  overlays.lights |= session.document.registry().has<scene::LocalLightComponent>(primary);
   constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
   for (const TurnedBox& turned : selectionBoxes(session.document, session.selection)) {
     const scene::Box& box = turned.box;
@@ -136,7 +117,7 @@ Result<void> Picture::draw(Session& session, const spec::View& view, spec::Size 
   const frame::StepCounts& counts = facts.counts = frame_.counts();
   facts.legend = frame_.legend();
   facts.passes = frame_.timers().latest();
-  facts.volume_bytes = frame_.kept<effects::volume::Volume>().textureBytes();
+  facts.volume_bytes = frame_.parts().volume.textureBytes();
   facts.settled = stage.world().loaded() && counts["light_probes_captured"] == 0 &&
                   counts["light_probes_waiting"] == 0 && counts["cells_shaded"] == 0 &&
                   counts["draws_shaded"] == 0 && counts["reflection_probes_captured"] == 0;
@@ -204,17 +185,12 @@ Result<void> ReferencePicture::show(Session& session, const baker::reference::Sn
   const spec::Size size{snapshot.image.width, snapshot.image.height};
   radiance_ = textureOf("reference", size, GL_RGBA32F);
   write(radiance_, GL_FLOAT, snapshot.image.texels.data());
-  if (!tone_mapper_) {
-    auto made = frame::ToneMapper::create(/*samples=*/0, /*linear=*/false);
-    if (!made) return failAgain(made.error());
-    tone_mapper_ = std::move(*made);
-  }
+  if (!tone_mapper_) tone_mapper_.emplace(/*samples=*/0, /*linear=*/false);
   shown_ = textureOf("reference, shown", size, GL_RGBA8);
   shown_target_ = gpu::Framebuffer("reference, shown", shown_, nullptr);
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_target_.id());
-  glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
+  shown_target_.bind();
   gpu::Counters counters;
-  tone_mapper_->run(radiance_, session.picture.exposure_ev, counters);
+  if (auto done = tone_mapper_->run(radiance_, session.picture.exposure_ev, counters); !done) return done;
   if (snapshot.spp == 0 || !session.picture.settled) return {};
   return compare(session, snapshot);
 }
@@ -246,21 +222,6 @@ void ReferencePicture::update(Session& session) {
   exposure_ev_ = exposure_ev;
 }
 
-void Thumbnails::update(Session& session) {
-  auto& pictures = session.asset_pictures.pictures();
-  std::erase_if(textures_, [&](const auto& texture) { return !pictures.contains(texture.first); });
-  for (auto& [file, picture] : pictures) {
-    if (picture.image.texels.empty()) continue;
-    const spec::Rgba8Image image = std::exchange(picture.image, {});
-    gpu::Texture texture("thumbnail", {.format = GL_RGBA8, .width = image.width, .height = image.height});
-    glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
-                        static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.texels.data());
-    picture.texture = texture.id();
-    picture.aspect = static_cast<float>(image.width) / static_cast<float>(image.height);
-    textures_[file] = std::move(texture);
-  }
-}
-
 Result<Renderer> Renderer::create(const Session& session) {
   auto made = Picture::create(session);
   if (!made) return failAgain(made.error());
@@ -271,7 +232,6 @@ void Renderer::update(Session& session, spec::Size size) {
   picture.update(session, size);
   reference.update(session);
   session.settings.update(session);
-  thumbnails.update(session);
 }
 
 }  // namespace lambent::editor

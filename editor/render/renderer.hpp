@@ -1,32 +1,19 @@
-// Does all OpenGL work of the editor except its widgets: the runtime's picture, the reference's, thumbnails,
+// Does all OpenGL work of the editor except its widgets: the runtime's picture, the reference's,
 // and the studies of what settings cost, one step a frame. It reads the session and writes its results
 // there. Main thread; it must not outlive the window's OpenGL context. Errors: no OpenGL 4.5.
 #pragma once
 
 #include <chrono>
 #include <deque>
-#include <filesystem>
-#include <map>
 #include <optional>
 #include <vector>
 
-#include "editor/session/assets.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 
 namespace lambent::editor {
-
-// Owns the textures of small pictures of assets, which the session makes on the CPU.
-class Thumbnails {
- public:
-  // Uploads new pictures, and tells the session their textures. Call it once a frame.
-  void update(Session& session);
-
- private:
-  std::map<std::filesystem::path, gpu::Texture> textures_;
-};
 
 // Renders the runtime's picture of the world from the editor's camera, whenever something that it shows has
 // changed. The session comes in; a texture goes out, and PictureFacts for commands and panels. Only pick()
@@ -129,7 +116,6 @@ class Renderer {
 
   Picture picture;
   ReferencePicture reference{};
-  Thumbnails thumbnails{};
 };
 
 }  // namespace lambent::editor

@@ -1,7 +1,6 @@
 #include "editor/session/field_numbers.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -89,9 +88,6 @@ bool isStrengthOfLight(const FieldInfo& field) {
 }
 
 bool hasNumbers(const FieldInfo& field) {
-  // A number of a measured BRDF is chosen by its name.
-  if (field.kind == ValueKind::Whole)
-    return field.component != scene::MaterialComponent::kComponentName || field.name != "brdf";
   if (field.kind == ValueKind::Vector) return !field.color;
   return field.kind == ValueKind::Number || field.kind == ValueKind::Rotation;
 }
@@ -100,13 +96,14 @@ std::vector<double> numbersOf(const Session& session, const FieldInfo& field, ec
                               const scene::Value& value) {
   if (const auto* number = std::get_if<float>(&value))
     return {double{*number} * factorOf(session, field, entity)};
-  if (const auto* whole = std::get_if<std::int32_t>(&value)) return {static_cast<double>(*whole)};
   if (const auto* v = std::get_if<glm::vec3>(&value)) return {double{v->x}, double{v->y}, double{v->z}};
   const auto* rotation = std::get_if<glm::quat>(&value);
   if (!rotation) return {};
-  const HeldAngles& held = session.field_edit.angles;
-  const bool same = std::abs(glm::dot(held.rotation, *rotation)) > 1.0f - 1e-6f;
-  const glm::vec3 degrees = same ? held.degrees : glm::degrees(glm::eulerAngles(*rotation));
+  const auto held = std::ranges::find_if(session.angles, [&](const HeldAngles& angles) {
+    return std::abs(glm::dot(angles.rotation, *rotation)) > 1.0f - 1e-6f;
+  });
+  const glm::vec3 degrees =
+      held != session.angles.end() ? held->degrees : glm::degrees(glm::eulerAngles(*rotation));
   return {double{degrees.x}, double{degrees.y}, double{degrees.z}};
 }
 
@@ -118,19 +115,7 @@ scene::Value valueOf(const Session& session, const FieldInfo& field, ecs::Entity
     return glm::normalize(glm::quat(glm::radians(glm::vec3(real(0), real(1), real(2)))));
   auto number = static_cast<float>(numbers[0] / factorOf(session, field, entity));
   if (field.range) number = std::clamp(number, field.range->least, field.range->greatest);
-  if (field.kind == ValueKind::Whole) return static_cast<std::int32_t>(std::lround(number));
   return number;
-}
-
-double stepOf(const Session& session, const FieldInfo& field, double number) {
-  const GizmoOptions& steps = session.handles.gizmo.options;
-  if (field.kind == ValueKind::Rotation || isAngle(field)) return double{steps.snap_deg};
-  if (field.unit == "m") return double{steps.snap_m};
-  if (field.component == scene::Transform::kComponentName && field.name == "scale")
-    return double{steps.snap_scale};
-  if (field.kind == ValueKind::Whole) return 10.0;
-  if (field.range && field.range->greatest - field.range->least <= 10.0f) return 0.1;
-  return 0.1 * std::pow(10.0, std::floor(std::log10(std::max(std::abs(number), 0.1))));
 }
 
 namespace {
@@ -162,41 +147,6 @@ bool isUsed(const ecs::Registry& registry, ecs::Entity entity, const scene::Fiel
   if (field.component == scene::MaterialComponent::kComponentName && field.name == "anisotropy_rotation")
     return registry.get<scene::MaterialComponent>(entity).anisotropy > 0.0f;
   return true;
-}
-
-namespace {
-
-// Returns the number that the text is, with blanks around it.
-std::optional<double> numberIn(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == text.npos) return std::nullopt;
-  text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [read, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && read == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
-
-double NumberEdit::appliedTo(double number) const {
-  return kind == Kind::Set ? amount : kind == Kind::Add ? number + amount : number * amount;
-}
-
-std::optional<NumberEdit> parseNumberEdit(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  if (text.empty()) return std::nullopt;
-  const char sign = text.front();
-  const bool assigns = text.size() > 1 && text[1] == '=';
-  // A number may begin with + or -, but not with * or /.
-  const bool relative = sign == '*' || sign == '/' || ((sign == '+' || sign == '-') && assigns);
-  const auto value = numberIn(relative ? text.substr(assigns ? 2 : 1) : text);
-  if (!value) return std::nullopt;
-  if (!relative) return NumberEdit{NumberEdit::Kind::Set, *value};
-  if (sign == '/' && *value == 0.0) return std::nullopt;
-  if (sign == '+' || sign == '-') return NumberEdit{NumberEdit::Kind::Add, sign == '+' ? *value : -*value};
-  return NumberEdit{NumberEdit::Kind::Multiply, sign == '*' ? *value : 1.0 / *value};
 }
 
 }  // namespace lambent::editor

@@ -12,30 +12,6 @@ namespace lambent::editor {
 
 namespace {
 
-// Returns the opening or closing of a scene as a change of the history.
-OutsideChange sceneChange(SceneSteps& steps, ClosedScene scene, bool opened) {
-  std::size_t bytes = sizeof scene + 1024;  // an estimate of paths and options
-  for (const EntityOverride& edit : scene.kept) {
-    bytes += sizeof edit + edit.name.size();
-    for (const FieldOverride& field : edit.fields) bytes += sizeof field + bytesOf(field.value);
-  }
-  return {[&steps, opened, scene = std::move(scene)](bool forth, std::vector<std::string>& missing) mutable {
-            if (opened != forth) {
-              if (!steps.take(scene)) missing.push_back("the scene " + scene.entry.id);
-            } else if (const auto brought = steps.bring(scene); !brought) {
-              missing.push_back(brought.error().line());
-            }
-          },
-          bytes};
-}
-
-std::optional<std::size_t> placeOf(const Scenes& scenes, const SceneEntry& entry) {
-  const auto& entries = scenes.entries();
-  const auto found = std::ranges::find_if(entries, [&](const auto& other) { return other.isSame(entry); });
-  if (found == entries.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - entries.begin());
-}
-
 // Returns the edits that lack something: those of entities that do not exist, and the parents of others that
 // were below them.
 Overrides lacking(const Document& document, Overrides all) {
@@ -52,81 +28,11 @@ Overrides lacking(const Document& document, Overrides all) {
   return gone;
 }
 
-}  // namespace
-
-Result<void> SceneSteps::open(const std::filesystem::path& path) {
-  const std::vector<SceneEntry> before = session_.scenes.entries();
-  const std::vector<std::filesystem::path> watched = session_.scenes.watched();
-  if (auto opened = session_.scenes.open(path); !opened) return opened;
-  session_.document.adoptAll();
-  const std::string name = "opening of " + path.filename().string();
-  session_.history.begin(name);
-  const auto did = [&](ClosedScene scene) {
-    session_.history.did(sceneChange(*this, std::move(scene), /*opened=*/true), name);
-  };
-  const auto& entries = session_.scenes.entries();
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    if (std::ranges::none_of(before, [&](const auto& other) { return other.isSame(entries[i]); }))
-      did({.entry = entries[i], .place = i, .kept = {}, .folder = {}});
-  for (const std::filesystem::path& folder : session_.scenes.watched())
-    if (std::find(watched.begin(), watched.end(), folder) == watched.end()) {
-      ClosedScene watch;
-      watch.folder = folder;
-      did(std::move(watch));
-    }
-  session_.history.commit();
-  return {};
+// Returns whether something is shown of each scene that is open.
+bool allShown(const Session& session) {
+  return std::ranges::all_of(session.scenes.entries(),
+                             [](const SceneEntry& scene) { return scene.slot.has_value(); });
 }
-
-void SceneSteps::close(std::size_t entry) {
-  ClosedScene scene{.entry = session_.scenes.entries()[entry], .place = entry, .kept = {}, .folder = {}};
-  if (!take(scene)) return;
-  const std::string name = "closing of " + scene.entry.id;
-  session_.history.did(sceneChange(*this, std::move(scene), /*opened=*/false), name);
-}
-
-Result<void> SceneSteps::bring(const ClosedScene& scene) {
-  if (!scene.folder.empty()) {
-    session_.scenes.watchFolder(scene.folder);
-    return {};
-  }
-  if (auto done = session_.scenes.reopen(scene.entry, scene.place); !done) return done;
-  awaited_.insert(awaited_.end(), scene.kept.begin(), scene.kept.end());
-  update();
-  return {};
-}
-
-bool SceneSteps::take(ClosedScene& scene) {
-  if (!scene.folder.empty()) {
-    session_.scenes.unwatchFolder(scene.folder);
-    return true;
-  }
-  const auto place = placeOf(session_.scenes, scene.entry);
-  if (!place) return false;
-  scene.entry = session_.scenes.entries()[*place];
-  scene.place = *place;
-  Overrides all = captureOverrides(session_.document, session_.changes.baseline());
-  session_.scenes.close(*place);
-  scene.kept = lacking(session_.document, std::move(all));
-  return true;
-}
-
-std::size_t SceneSteps::await(const Overrides& edits) {
-  awaited_ = lacking(session_.document, edits);
-  return awaited_.size();
-}
-
-void SceneSteps::update() {
-  Overrides here;
-  for (const EntityOverride& edit : awaited_)
-    if (session_.document.find(edit.id)) here.push_back(edit);
-  if (here.empty()) return;
-  applyOverrides(session_.document, here);
-  awaited_ = lacking(session_.document, std::move(awaited_));
-  session_.viewing.changed = true;
-}
-
-namespace {
 
 bool namesWorld(const std::filesystem::path& path) {
   return path.extension() == ".json";
@@ -170,7 +76,8 @@ Result<void> Files::openNow(const std::filesystem::path& path) {
     return {};
   }
   const bool first = session_.scenes.entries().empty();
-  if (auto opened = session_.scene_steps.open(path); !opened) return opened;
+  if (auto opened = session_.scenes.open(path); !opened) return opened;
+  session_.document.adoptAll();
   session_.preferences.addRecent(path);
   if (first) session_.viewing.frame_when_loaded = true;
   return {};
@@ -181,16 +88,17 @@ void Files::openWorld(const std::filesystem::path& path, WorldFile file) {
   Log& log = session_.log;
   for (const BundleEntry& bundle : file.state.bundles) session_.scenes.open(bundle, path.parent_path());
   for (const std::string& notice : file.notices) log.warn(path.string() + ": " + notice);
+  if (!file.notices.empty()) session_.window.wanted_panels.emplace_back("Log");  // saving would lose these
   const ApplyReport applied = applyWorld(session_.document, file);
-  const std::size_t wait = session_.scene_steps.await(file.entities);
-  const auto& scenes = session_.scenes.entries();
-  if (!std::ranges::all_of(scenes, [](const SceneEntry& scene) { return scene.slot.has_value(); })) {
-    if (wait > 0) log.note(fmt::format("{}: edits of {} objects wait for their scene", path.string(), wait));
+  awaited_ = lacking(session_.document, file.entities);
+  if (!allShown(session_)) {
+    if (!awaited_.empty())
+      log.note(fmt::format("{}: edits of {} objects wait for their scene", path.string(), awaited_.size()));
   } else {
     for (const std::string& missing : applied.missing)
       log.warn(path.string() + ": " + missing + " is not there any more; its edits wait");
   }
-  loaded_ = std::move(file);
+  bundles_ = std::move(file.state.bundles);
   world_ = path;
   session_.history.clear();
   session_.preferences.addRecent(path);
@@ -209,12 +117,12 @@ Result<void> Files::save(const std::filesystem::path& path) {
   const std::filesystem::path before = world_;
   world_ = std::filesystem::absolute(path);
   keepWorldState();
-  const WorldFile file =
-      captureWorld(session_.document, session_.changes.baseline(), loaded_ ? &*loaded_ : nullptr);
+  const WorldFile file = captureWorld(session_.document, session_.changes.baseline(), awaited_);
   if (auto saved = saveWorldFile(world_, file); !saved) {
     world_ = before;
     return saved;
   }
+  bundles_ = file.state.bundles;
   session_.history.markSaved();
   session_.preferences.addRecent(world_);
   return {};
@@ -228,11 +136,35 @@ Result<std::filesystem::path> Files::rescue() {
   return rescued;
 }
 
+void Files::close(std::size_t entry) {
+  const SceneEntry closed = session_.scenes.entries()[entry];
+  unlessUnsaved(fmt::format("Edits of {} that are not saved are lost. Close it?", closed.id),
+                [closed](Session& session) {
+                  const auto& scenes = session.scenes.entries();
+                  const auto is_it = [&](const SceneEntry& other) { return other.isSame(closed); };
+                  const auto found = std::ranges::find_if(scenes, is_it);
+                  if (found == scenes.end()) return;
+                  session.scenes.close(static_cast<std::size_t>(found - scenes.begin()));
+                  // What still waits while all scenes are there is of a scene that was closed.
+                  if (allShown(session)) session.files.awaited_.clear();
+                });
+}
+
+void Files::restoreAwaited() {
+  Overrides here;
+  for (const EntityOverride& edit : awaited_)
+    if (session_.document.find(edit.id)) here.push_back(edit);
+  if (here.empty()) return;
+  applyOverrides(session_.document, here);
+  awaited_ = lacking(session_.document, std::move(awaited_));
+  session_.viewing.changed = true;
+}
+
 void Files::closeAll() {
   Document& document = session_.document;
   const ecs::Entity environment = session_.stage.environmentEntity();
   session_.scenes.closeAll();
-  session_.scene_steps.clear();
+  awaited_.clear();
   session_.selection.clear();
   std::vector<ecs::Entity> created;
   for (const auto [entity, mark] : document.registry().view<const Created>()) created.push_back(entity);
@@ -243,13 +175,17 @@ void Files::closeAll() {
   document.registry().edit<scene::EnvironmentComponent>(environment) = {};
   document.setWorld(std::move(world));
   world_.clear();
-  loaded_.reset();
+  bundles_.clear();
   session_.history.clear();
   session_.viewing.frame_when_loaded = true;
 }
 
 bool Files::modified() const {
-  return world_.empty() ? session_.history.modifiedInside() : session_.history.modified();
+  const auto same = [](const SceneEntry& scene, const BundleEntry& bundle) {
+    return scene.id == bundle.id && scene.instance == bundle.instance;
+  };
+  return session_.history.modified() ||
+         (!world_.empty() && !std::ranges::equal(session_.scenes.entries(), bundles_, same));
 }
 
 void Files::unlessUnsaved(std::string question, std::function<void(Session&)> then) {
@@ -326,7 +262,7 @@ void askWhereToSave(Session& session, Then then) {
   Dialog ask;
   ask.kind = Dialog::Kind::SaveFile;
   ask.title = "Save the world";
-  ask.kinds = {{"Worlds", {".json"}}};
+  ask.endings = {".json"};
   ask.folder = startFolder(session);
   ask.name = proposedName(session);
   ask.yes = "Save";

@@ -17,43 +17,7 @@
 
 namespace lambent::editor {
 
-// Opens and closes scenes as steps of the history. Undoing a close opens the scene's files again and restores
-// its edits; undoing an open closes the scene. A reopened scene has the same StableIds, so earlier steps stay
-// valid. If it has no bundle yet, its edits are restored when the first one is shown. Main thread.
-
 class Session;
-
-// Holds a scene that was closed, or a folder that is no longer watched.
-struct ClosedScene {
-  SceneEntry entry;
-  std::size_t place = 0;  // index among the entries
-  Overrides kept;         // edits of its bundle
-  std::filesystem::path folder;
-};
-
-class SceneSteps {
- public:
-  explicit SceneSteps(Session& session) : session_(session) {}
-
-  // Opens everything that belongs to the path as one step. Errors: there is nothing that can be opened.
-  Result<void> open(const std::filesystem::path& path);
-  void close(std::size_t entry);
-  // Keeps those of a world file's edits whose entities do not exist, until their scenes are shown. Returns
-  // how many these are.
-  std::size_t await(const Overrides& edits);
-  // Restores the edits whose entities have come. Call it when the scenes have changed.
-  void update();
-  void clear() { awaited_.clear(); }
-
-  // The rest is for the steps themselves. bring() opens the scene again.
-  Result<void> bring(const ClosedScene& scene);
-  // Closes the scene and stores its state in `scene`. Returns false if it is not open.
-  bool take(ClosedScene& scene);
-
- private:
-  Session& session_;
-  Overrides awaited_;  // edits whose entities do not exist yet, of the world file and of reopened scenes
-};
 
 class Files {
  public:
@@ -70,7 +34,12 @@ class Files {
   // Saves what closing would lose under a name of its own, beside the world's file or, if it has none, in the
   // working folder. Returns where it lies, or an empty path if nothing would be lost.
   Result<std::filesystem::path> rescue();
+  // Takes a scene out of the world. If that would lose edits, a dialog asks first.
+  void close(std::size_t entry);
   void closeAll();
+  // Restores those edits of a world file that wait for their scene and whose entities have come. Call it when
+  // the scenes have changed.
+  void restoreAwaited();
 
   // Returns the world's file, or an empty path if it has none yet.
   const std::filesystem::path& world() const { return world_; }
@@ -92,7 +61,8 @@ class Files {
 
   Session& session_;
   std::filesystem::path world_;
-  std::optional<WorldFile> loaded_;  // the file as it was loaded: its unknown parts are saved again
+  std::vector<BundleEntry> bundles_;  // of the world's file
+  Overrides awaited_;                 // edits of the world's file whose entities do not exist yet
 };
 
 // Returns the folder in which dialogs begin: that of the world, of the scene that is open, or of what was

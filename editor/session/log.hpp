@@ -1,11 +1,10 @@
-// Stores notices and errors for the log panel and for toasts. It is safe to use from any thread, because
-// bakes and loaders report from theirs.
+// Stores notices and errors for the log panel. It is safe to use from any thread, because bakes and loaders
+// report from theirs.
 #pragma once
 
 #include <chrono>
 #include <deque>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,6 @@ struct LogEntry {
   std::string text;
   std::chrono::system_clock::time_point when;  // of the latest, if it was repeated
   std::uint32_t times = 1;                     // how often it was added in a row
-  std::uint64_t number = 0;                    // increases from entry to entry
-  // As a toast over the view: whether it still stands, since when (nothing: not yet), and for how many
-  // frames.
-  bool is_toast = true;
-  std::optional<std::chrono::steady_clock::time_point> shown{};
-  std::uint32_t frames = 0;
 };
 
 class Log {
@@ -39,17 +32,14 @@ class Log {
   void clear();
 
   std::vector<LogEntry> entries() const;
-  // Returns what stands over the view as toasts at this time, the latest last. Call it once for each frame: a
-  // toast stays for some seconds, and for some frames where these take seconds.
-  std::vector<LogEntry> toasts(std::chrono::steady_clock::time_point now);
-  // Returns whether the last frame had toasts, or the next one will.
-  bool hasToasts() const;
-  std::uint64_t errors() const;
+  std::uint64_t errors() const;  // how many there were
+  // Returns whether there were errors since the last call. They bring the log panel to the front.
+  bool takeNewErrors();
 
  private:
   mutable std::mutex lock_;
   std::deque<LogEntry> entries_;
-  std::uint64_t next_ = 0, errors_ = 0;
+  std::uint64_t errors_ = 0, taken_ = 0;
 };
 
 }  // namespace lambent::editor

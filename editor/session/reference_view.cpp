@@ -22,60 +22,53 @@ bool isShape(LocalLightComponent::Kind kind) {
   return kind == LocalLightComponent::Kind::Sphere || kind == LocalLightComponent::Kind::Disc;
 }
 
+// Calls a function with each light that a person has added to the world, and with its place.
 template <typename Visitor>
-void forEachLight(const ecs::Registry& registry, const Document& document, const Visitor& visit) {
+void forEachLight(const Session& session, const Visitor& visit) {
+  const ecs::Registry& registry = session.document.registry();
   for (const auto [entity, light] : registry.view<const LocalLightComponent>())
-    if (light.enabled && document.created(entity) && registry.has<scene::Transform>(entity))
-      visit(light, worldFromNode(registry, entity), document.nameOf(entity));
+    if (light.enabled && session.document.created(entity) && registry.has<scene::Transform>(entity))
+      visit(light, worldFromNode(registry, entity), session.document.nameOf(entity));
 }
 
-gltf::Light::Type typeOf(LocalLightComponent::Kind kind) {
-  if (kind == LocalLightComponent::Kind::Spot) return gltf::Light::Type::Spot;
-  return kind == LocalLightComponent::Kind::Directional ? gltf::Light::Type::Directional
-                                                        : gltf::Light::Type::Point;
-}
-
-std::vector<ReferenceLamp> lampsOf(const ecs::Registry& registry, const Document& document) {
+std::vector<ReferenceLamp> lampsOf(const Session& session) {
+  using Type = gltf::Light::Type;
   std::vector<ReferenceLamp> lamps;
-  forEachLight(
-      registry, document,
-      [&](const LocalLightComponent& light, const glm::mat4& place, const std::string& name) {
-        if (!isShape(light.kind))
-          lamps.push_back({name,
-                           place,
-                           typeOf(light.kind),
-                           light.color,
-                           {light.strength, light.range_m, light.inner_cone_rad, light.outer_cone_rad}});
-      });
+  forEachLight(session, [&](const LocalLightComponent& light, const glm::mat4& place, std::string name) {
+    const Type type = light.kind == LocalLightComponent::Kind::Spot          ? Type::Spot
+                      : light.kind == LocalLightComponent::Kind::Directional ? Type::Directional
+                                                                             : Type::Point;
+    if (!isShape(light.kind))
+      lamps.push_back({place,
+                       {std::move(name), type, light.color, light.strength, light.range_m,
+                        light.inner_cone_rad, light.outer_cone_rad}});
+  });
   return lamps;
 }
 
 void addLamps(const std::vector<ReferenceLamp>& lamps, baker::Scene& scene) {
   for (const ReferenceLamp& lamp : lamps) {
     gltf::Node node;
-    node.name = lamp.name;
+    node.name = lamp.light.name;
     node.parent_from_node = lamp.world_from_node;
     node.light = static_cast<std::int32_t>(scene.lights.size());
-    const auto& [intensity, range_m, inner_cone_rad, outer_cone_rad] = lamp.numbers;
-    scene.lights.push_back(
-        {lamp.name, lamp.type, lamp.color, intensity, range_m, inner_cone_rad, outer_cone_rad});
+    scene.lights.push_back(lamp.light);
     scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
     scene.nodes.push_back(std::move(node));
   }
 }
 
 // Returns the spherical and disc lights that a person has added to the world.
-std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document) {
+std::vector<spec::Light> shapesOf(const Session& session) {
   std::vector<spec::Light> shapes;
-  forEachLight(registry, document,
-               [&](const LocalLightComponent& light, const glm::mat4& place, const std::string&) {
-                 const glm::vec3 at(place[3]), radiance = light.power();
-                 if (light.kind == LocalLightComponent::Kind::Sphere)
-                   shapes.emplace_back(spec::SphereLight{at, light.radius_m, radiance});
-                 else if (light.kind == LocalLightComponent::Kind::Disc)
-                   shapes.emplace_back(
-                       spec::DiscLight{at, -glm::normalize(glm::vec3(place[2])), light.radius_m, radiance});
-               });
+  forEachLight(session, [&](const LocalLightComponent& light, const glm::mat4& place, const std::string&) {
+    const glm::vec3 at(place[3]), radiance = light.power();
+    if (light.kind == LocalLightComponent::Kind::Sphere)
+      shapes.emplace_back(spec::SphereLight{at, light.radius_m, radiance});
+    else if (light.kind == LocalLightComponent::Kind::Disc)
+      shapes.emplace_back(
+          spec::DiscLight{at, -glm::normalize(glm::vec3(place[2])), light.radius_m, radiance});
+  });
   return shapes;
 }
 
@@ -200,8 +193,7 @@ void ReferenceView::followScene(const Session& session) {
     return;
   }
   if (parts->empty()) return;  // nothing is shown yet
-  SceneKey key{std::move(*parts), lampsOf(session.stage.world().registry(), session.document),
-               session.playback.time_s};
+  SceneKey key{std::move(*parts), lampsOf(session), session.playback.time_s};
   if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     auto made = coming_.get();
     if (made) {
@@ -245,8 +237,7 @@ void ReferenceView::followEye(const Session& session) {
     request.lights = std::move(sky.lights);
     request.light_factors = std::move(sky.factors);
   }
-  for (spec::Light& shape : shapesOf(session.stage.world().registry(), session.document))
-    request.lights.push_back(std::move(shape));
+  for (spec::Light& shape : shapesOf(session)) request.lights.push_back(std::move(shape));
   request.view = key.view;
   request.options.size = key.size;
   request.options.spp = spp;

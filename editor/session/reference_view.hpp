@@ -5,7 +5,6 @@
 // picture. Main thread; tracing runs on others.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -41,11 +40,8 @@ struct ReferencePart {
 
 // A point, spot or directional light of the world that belongs to no bundle.
 struct ReferenceLamp {
-  std::string name;
   glm::mat4 world_from_node{1.0f};
-  gltf::Light::Type type{};
-  glm::vec3 color{1.0f};
-  std::array<float, 4> numbers{};  // intensity, range, inner and outer cone
+  gltf::Light light;
   bool operator==(const ReferenceLamp&) const = default;
 };
 

@@ -49,8 +49,8 @@ Scenes::Scenes(frame::World& world, Log& log, SceneSettings settings)
     else
       log_.warn(cache.error().line() + "; bakes keep nothing");
   }
-  queue_ = std::make_unique<baker::BakeQueue>(baker::QueueSettings{
-      .work_folder = settings_.cache_folder, .cache = cache_ ? &*cache_ : nullptr, .previews = true});
+  queue_ = std::make_unique<baker::BakeQueue>(
+      baker::QueueSettings{.work_folder = settings_.cache_folder, .cache = cache_ ? &*cache_ : nullptr});
 }
 
 Scenes::~Scenes() {
@@ -113,8 +113,7 @@ void Scenes::open(const BundleEntry& saved, const std::filesystem::path& folder)
   SceneEntry entry{.bundle = baker::plainPath(folder / saved.path),
                    .id = saved.id,
                    .instance = saved.instance,
-                   .options = optionsOf(saved),
-                   .unknown = saved.unknown};
+                   .options = optionsOf(saved)};
   std::error_code ignored;
   if (!saved.source.empty()) {
     entry.source = baker::plainPath(folder / saved.source);
@@ -196,18 +195,9 @@ Result<void> Scenes::openFolder(const std::filesystem::path& folder) {
     if (of_scene) continue;
     if (auto opened = open(file); !opened) log_.error(opened.error());
   }
-  watchFolder(folder);
+  if (std::ranges::find(watched_, folder) == watched_.end()) watched_.push_back(folder);
+  watch();
   return {};
-}
-
-void Scenes::watchFolder(const std::filesystem::path& folder) {
-  if (std::find(watched_.begin(), watched_.end(), folder) == watched_.end()) watched_.push_back(folder);
-  watch();
-}
-
-void Scenes::unwatchFolder(const std::filesystem::path& folder) {
-  std::erase(watched_, folder);
-  watch();
 }
 
 void Scenes::request(SceneEntry& entry, baker::PreviewLevel last) {
@@ -278,11 +268,7 @@ void Scenes::take(const baker::WatchEvent& event) {
   using Kind = baker::WatchEvent::Kind;
   const std::filesystem::path scene = baker::plainPath(event.scene);
   SceneEntry* entry = find(scene);
-  if (event.kind == Kind::Broken && event.error) {
-    // A scene that was broken when it was opened has been reported by its bake.
-    const auto job = entry ? jobOf(static_cast<std::size_t>(entry - entries_.data())) : std::nullopt;
-    if (!job || !job->error || job->error->line() != event.error->line()) log_.error(*event.error);
-  } else if (event.kind == Kind::Removed && entry) {
+  if (event.kind == Kind::Removed && entry) {
     log_.warn(scene.string() + ": is gone; its bundle stays");
   } else if (event.kind == Kind::Found && !entry && isWatched(scene)) {
     if (auto opened = open(scene); !opened) log_.error(opened.error());
@@ -337,27 +323,6 @@ void Scenes::close(std::size_t index) {
   watch();
 }
 
-Result<void> Scenes::reopen(SceneEntry entry, std::size_t place) {
-  entry.slot.reset(), entry.job.reset(), entry.shown.clear();
-  std::error_code ignored;
-  const bool source = !entry.source.empty() && std::filesystem::exists(entry.source, ignored);
-  if (std::filesystem::exists(entry.bundle, ignored)) {
-    const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id, .instance = entry.instance});
-    if (slot)
-      entry.slot = *slot, entry.shown = entry.bundle, entry.missing.reset();
-    else if (!source && !entry.missing)
-      return failAgain(slot.error());
-  } else if (!source && !entry.missing) {
-    return fail(entry.bundle.string(), "is not there", "put it back, then undo or redo again");
-  }
-  const auto at = entries_.insert(
-      entries_.begin() + static_cast<std::ptrdiff_t>(std::min(place, entries_.size())), std::move(entry));
-  ++version_;
-  if (source) request(*at);
-  watch();
-  return {};
-}
-
 void Scenes::closeAll() {
   watched_.clear();
   while (!entries_.empty()) close(entries_.size() - 1);
@@ -377,7 +342,6 @@ std::vector<BundleEntry> Scenes::state(const std::filesystem::path& folder) cons
     if (!entry.source.empty()) bundle.source = relative(entry.source);
     bundle.bake_options = entry.options.settings();
     if (!entry.edits.empty()) bundle.bake_options[kEditsOption] = baker::editsText(entry.edits);
-    bundle.unknown = entry.unknown;
   }
   return bundles;
 }

@@ -33,7 +33,6 @@ struct SceneEntry {
   baker::SceneEdits shown_edits{};  // the edits that the shown bundle was baked with
   // Why the bundle cannot be opened and its scene is not there. The scene waits until it is back.
   std::optional<Error> missing{};
-  UnknownFields unknown{};  // of its entry in the world file
 
   bool isSame(const SceneEntry& other) const { return id == other.id && instance == other.instance; }
 };
@@ -59,12 +58,6 @@ class Scenes {
   void open(const BundleEntry& entry, const std::filesystem::path& folder);
   void close(std::size_t entry);
   void closeAll();
-  // Opens a closed entry again, at its index `place`. It shows the bundle on disk and bakes with the options
-  // and edits of the entry. Errors: neither the bundle nor the scene exists any more, and did before.
-  Result<void> reopen(SceneEntry entry, std::size_t place);
-  void watchFolder(const std::filesystem::path& folder);
-  void unwatchFolder(const std::filesystem::path& folder);
-
   // Applies what bakes and file changes did since the last call. Returns whether anything changed.
   bool update();
 
@@ -78,7 +71,6 @@ class Scenes {
   const std::vector<SceneEntry>& entries() const { return entries_; }
   // Returns the state at the last update() or request, so that all parts of a frame say the same.
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
-  const std::vector<std::filesystem::path>& watched() const { return watched_; }
   // Returns the entries for a world file, with paths relative to `folder`.
   std::vector<BundleEntry> state(const std::filesystem::path& folder) const;
   // Increases when an entry is added or removed, or shows another bundle.

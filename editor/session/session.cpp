@@ -1,14 +1,12 @@
 #include "editor/session/session.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "runtime/base/lower_case.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -136,12 +134,11 @@ void Session::logBundleErrors() {
 void Session::update(double seconds) {
   if (scenes.update()) {
     document.adoptAll();
-    scene_steps.update();
+    files.restoreAwaited();
     viewing.changed = true;
   }
   logBundleErrors();
   followDocument();
-  asset_pictures.update();
   if (playback.playing) {
     stage.world().playAnimations(static_cast<float>(seconds));
     playback.time_s += static_cast<float>(seconds);
@@ -159,18 +156,6 @@ bool Session::moving() const {
   const bool animated = playback.playing && document.registry().count<scene::AnimationComponent>() > 0;
   return viewing.changed || viewing.flying || animated || !picture.settled || picture.in_flight ||
          (reference.on() && !reference.done()) || !measured();
-}
-
-bool Session::awaits() const {
-  return scenes.busy() || asset_pictures.busy() || log.hasToasts();
-}
-
-bool holdsWords(std::string_view text, std::string_view search) {
-  const std::string low = lowerCase(text);
-  std::istringstream words(lowerCase(search));
-  for (std::string word; words >> word;)
-    if (low.find(word) == std::string::npos) return false;
-  return true;
 }
 
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word) {
@@ -199,7 +184,7 @@ std::optional<std::size_t> sceneAtHand(const Session& session) {
     const auto holds = [&](const std::vector<ecs::Entity>& list) {
       return std::find(list.begin(), list.end(), primary) != list.end();
     };
-    if (holds(instance.groups) || holds(instance.draws) || holds(instance.animations)) return i;
+    if (holds(instance.groups) || holds(instance.animations) || holds(instance.materials)) return i;
   }
   return 0;
 }

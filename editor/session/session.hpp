@@ -18,9 +18,7 @@
 #include "editor/document/history.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/gizmo/gizmo.hpp"
-#include "editor/gizmo/light_gizmos.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "editor/session/assets.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/key_lights.hpp"
@@ -89,21 +87,14 @@ struct DialogFile {
   bool is_folder = false;
 };
 
-// Names a kind of file by the endings of its names.
-struct FileKind {
-  std::string name;
-  std::vector<std::string> endings;
-};
-
 struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;
   std::string title{}, question{};
-  std::vector<FileKind> kinds{};                   // of files to list; empty: all files
-  std::size_t filter = 0;                          // 0: all these kinds; n: the nth; past the last: all files
+  std::vector<std::string> endings{};              // of the files to list; empty: all files
   std::filesystem::path folder{};                  // the folder that is shown
   std::string name{};                              // the text typed so far
-  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty third one has no button
+  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty one has no button
   std::function<void(Session&, const std::string& answer)> answered{};
   std::function<void(Session&)> third_chosen{};
 
@@ -111,7 +102,7 @@ struct Dialog {
   // of the folder. Disks are not asked in every frame.
   std::vector<DialogPlace> places{};
   std::vector<DialogFile> files{};
-  ChangeGate<std::filesystem::path, std::filesystem::file_time_type, std::size_t> listed{};
+  ChangeGate<std::filesystem::path, std::filesystem::file_time_type> listed{};
 };
 
 // Holds what commands request from the window: a dialog, panels to bring to the front, or the end of the
@@ -122,9 +113,6 @@ struct WindowRequests {
   bool raise_tabs = true;                  // also bring the preferences' tabs to the front
   // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
   std::vector<std::string> wanted_commands;
-  bool palette = false;  // the list of commands is open
-  bool keys = false;     // the list of keys is open
-  std::string palette_words;
   bool quit = false;
   std::uint64_t frames = 0;  // how many the window has drawn
 };
@@ -140,15 +128,12 @@ struct SessionOptions {
   baker::Quality quality = baker::Quality::Standard;
 };
 
-// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection, shape
-// lights, and drag suns. editor/panels/viewport.cpp drives them.
+// Holds the state of the handles that move, turn and scale the selection between frames.
+// editor/panels/viewport.cpp drives them.
 struct Handles {
   bool shown = true;
   Gizmo gizmo;
-  LightGizmo light_gizmo;
-  SunGizmo sun_gizmo;
   FinePointer pointer;
-  std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
 };
 
 // Holds whether the world's animations are playing, and their time.
@@ -179,9 +164,6 @@ class Session {
   bool measured() const { return !settings.busy(); }
   // Returns whether frames must be drawn even without input.
   bool moving() const;
-  // Returns whether something comes from elsewhere that the window will show: bakes, files that are read,
-  // notices that vanish. It need not be looked at in every frame.
-  bool awaits() const;
 
   Log log;
   Preferences preferences;
@@ -191,7 +173,6 @@ class Session {
   History history;
   Selection selection;
   TreeRows tree;
-  SceneSteps scene_steps{*this};
   SceneChanges changes{stage.world(), scenes, history, log};
   Files files{*this};
   Viewing viewing;
@@ -200,10 +181,8 @@ class Session {
   PictureFacts picture;
   ReferenceView reference;
   SettingStudy settings;
-  AssetBrowser assets;
-  AssetPictures asset_pictures;
-  Clip clipboard;
-  FieldEditState field_edit;
+  std::vector<EntitySnapshot> clipboard;
+  std::vector<HeldAngles> angles;  // of the rotations that were edited last
   WindowRequests window;
 
  private:
@@ -218,8 +197,6 @@ class Session {
 
 // ---- Words of scripts and menus, for entities by name, id or search, and for scenes by id or number.
 
-// Returns whether all words of the search are parts of the text.
-bool holdsWords(std::string_view text, std::string_view search);
 // Returns all matches, or an error if there is none. A match of the whole name wins over matches of parts.
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word);
 // Returns the scene of the primary selected entity, else the first scene, or none if no scene is open.

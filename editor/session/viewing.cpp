@@ -108,7 +108,6 @@ Result<void> Viewing::setCamera(const Document& document, std::string_view word)
 
 void Viewing::keep(WorldState& world) const {
   world.view["eye"] = poseWord(goal);
-  world.view["shows"] = frame::wordOf(surfaces);
 }
 
 void Viewing::follow(const WorldState& world) {

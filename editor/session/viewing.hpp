@@ -14,7 +14,6 @@
 
 #include "editor/document/document.hpp"
 #include "editor/gizmo/camera_control.hpp"
-#include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/measure/measured_frame.hpp"
 #include "runtime/scene/bounds.hpp"

@@ -130,10 +130,6 @@ void apply(const ScriptedInput& input) {
 
 #endif
 
-bool enterPressed() {
-  return keyPressed(GLFW_KEY_ENTER);
-}
-
 bool escapePressed() {
   return keyPressed(GLFW_KEY_ESCAPE);
 }

@@ -18,7 +18,6 @@ struct ScriptedInput;
 bool keyPressed(int glfw_key, bool repeat = true);
 bool keyHeld(int glfw_key);
 bool anyKeyHeld();
-bool enterPressed();
 bool escapePressed();
 
 // Hands over a script's input for the frame that NewFrame() is about to begin. Keys and buttons that are not

@@ -12,7 +12,7 @@
 #include <glm/vec2.hpp>
 
 #include "editor/ui/marks.hpp"
-#include "runtime/gpu/window.hpp"
+#include "runtime/gpu/context.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::editor {

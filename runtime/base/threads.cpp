@@ -15,10 +15,7 @@ namespace lambent {
 
 namespace {
 
-std::size_t processors() {
-  static const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
-  return count;
-}
+constexpr std::size_t kMostHelpers = 15;
 
 struct Job {
   Job(std::size_t part_count, const std::function<void(std::size_t)>* each) : count(part_count), part(each) {}
@@ -35,67 +32,31 @@ struct Job {
   }
 };
 
-// Threads that wait for jobs. A thread that starts late finds nothing left to do, and the caller has not
-// waited.
-class Helpers {
- public:
-  static Helpers& get() {
-    static Helpers helpers(std::min(processors() - 1, kMost));
-    return helpers;
-  }
-  void call(const std::shared_ptr<Job>& job, std::size_t times) {
-    {
-      const std::lock_guard lock(mutex_);
-      jobs_.insert(jobs_.end(), std::min(times, threads_.size()), job);
-    }
-    called_.notify_all();
-  }
-
- private:
-  static constexpr std::size_t kMost = 15;
-
-  explicit Helpers(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i)
-      threads_.emplace_back([this](const std::stop_token& stop) { run(stop); });
-  }
-  void run(const std::stop_token& stop) {
-    for (;;) {
-      std::shared_ptr<Job> job;
-      {
-        std::unique_lock lock(mutex_);
-        if (!called_.wait(lock, stop, [&] { return !jobs_.empty(); })) return;
-        job = std::move(jobs_.front());
-        jobs_.pop_front();
-      }
-      job->work();
-    }
-  }
-
-  std::mutex mutex_;  // guards jobs_
-  std::condition_variable_any called_;
-  std::deque<std::shared_ptr<Job>> jobs_;
-  std::vector<std::jthread> threads_;  // last member, because threads use the others
-};
-
 }  // namespace
 
 void inParallel(std::size_t count, std::size_t worth, const std::function<void(std::size_t)>& part) {
-  const std::size_t threads = std::min(count / std::max<std::size_t>(worth, 1), processors());
+  static const std::size_t processors = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t threads =
+      std::min({count / std::max<std::size_t>(worth, 1), processors, kMostHelpers + 1});
   if (threads < 2) {
     for (std::size_t i = 0; i < count; ++i) part(i);
     return;
   }
+  // A thread that starts late finds nothing left to do, and the caller has not waited.
+  static ThreadPool helpers(kMostHelpers);
   const auto job = std::make_shared<Job>(count, &part);
-  Helpers::get().call(job, threads - 1);
+  for (std::size_t i = 1; i < threads; ++i) helpers.run([job] { job->work(); });
   job->work();
   for (std::size_t done = job->done; done < count; done = job->done) job->done.wait(done);
 }
 
 struct ThreadPool::State {
+  explicit State(std::size_t most_threads) : most(most_threads) {}
+
   void run(std::function<void()> next) {
     const std::lock_guard lock(mutex);
     work.push_back(std::move(next));
-    if (work.size() > waiting)
+    if (work.size() > waiting && threads.size() < most)
       threads.emplace_back([this](const std::stop_token& stop) { serve(stop); });
     else
       called.notify_one();
@@ -116,6 +77,7 @@ struct ThreadPool::State {
     }
   }
 
+  const std::size_t most;
   std::mutex mutex;  // guards the members below
   std::condition_variable_any called;
   std::deque<std::function<void()>> work;  // tasks that no thread has taken yet
@@ -123,7 +85,7 @@ struct ThreadPool::State {
   std::vector<std::jthread> threads;       // last member, because threads use the others
 };
 
-ThreadPool::ThreadPool() : state_(std::make_unique<State>()) {}
+ThreadPool::ThreadPool(std::size_t most_threads) : state_(std::make_unique<State>(most_threads)) {}
 ThreadPool::~ThreadPool() = default;
 ThreadPool::ThreadPool(ThreadPool&&) noexcept = default;
 ThreadPool& ThreadPool::operator=(ThreadPool&&) noexcept = default;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace lambent {
@@ -17,13 +18,14 @@ void inParallel(std::size_t count, std::size_t worth, const std::function<void(s
 // much of a frame, so threads are reused.
 class ThreadPool {
  public:
-  ThreadPool();
+  explicit ThreadPool(std::size_t most_threads = std::numeric_limits<std::size_t>::max());
   ~ThreadPool();  // waits for all tasks
   ThreadPool(ThreadPool&&) noexcept;
   ThreadPool& operator=(ThreadPool&&) noexcept;
 
-  // Calls work() at once on a thread of its own: an idle thread if there is one, else a new one. `work` must
-  // not throw. This may be called from any thread.
+  // Calls work() at once on a thread of its own: an idle thread if there is one, else a new one, or the next
+  // that becomes idle if there are as many as may be. `work` must not throw. This may be called from any
+  // thread.
   void run(std::function<void()> work);
 
  private:

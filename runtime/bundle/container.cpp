@@ -2,21 +2,28 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 #include <zstd.h>
 
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/bundle/glb.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
+
+static_assert(std::endian::native == std::endian::little,
+              "GLB is little endian; a big-endian port must swap here");
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
@@ -42,44 +49,86 @@ Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, 
   return out;
 }
 
-struct Reader::File {
-  GlbFile glb;
-  Description description;
-};
+Reader::File::~File() {
+  if (descriptor >= 0) ::close(descriptor);
+}
 
-Reader::Reader(std::unique_ptr<File> file) : file_(std::move(file)) {}
-Reader::Reader(Reader&&) noexcept = default;
-Reader& Reader::operator=(Reader&&) noexcept = default;
-Reader::~Reader() = default;
-
-namespace {
-
-// Checks the JSON chunk against the integrity view, which holds its checksum and the complement of that
-// (description_json.hpp).
-Result<void> checkJson(const GlbFile& glb) {
-  std::array<std::uint64_t, 2> stored{};
-  if (glb.binaryBytes() < kIntegrityBytes)
-    return fail(glb.path().string(), "is not a bundle", "bake it with `lambent bake`");
-  if (auto read = glb.readBinary(0, std::as_writable_bytes(std::span(stored))); !read) return read;
-  const std::uint64_t found = checksum(std::as_bytes(std::span(glb.json())));
-  if (stored[0] != found || stored[1] != ~found)
-    return fail(glb.path().string(), "is damaged: its description does not match its checksum", kCopyAgain);
+Result<void> Reader::File::readAt(std::uint64_t offset, std::span<std::byte> out) const {
+  while (!out.empty()) {
+    const ssize_t got = ::pread(descriptor, out.data(), out.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0)
+      return fail(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)), "check the disk");
+    if (got == 0) return fail(path.string(), "is truncated", kCopyAgain);
+    out = out.subspan(static_cast<std::size_t>(got));
+    offset += static_cast<std::uint64_t>(got);
+  }
   return {};
 }
 
-}  // namespace
+Result<std::string> Reader::File::open() {
+  if (auto checked = checkRegularFile(path, "a bundle (.lmb.glb)"); !checked)
+    return failAgain(checked.error());
+  const std::string name = path.string();
+  descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0)
+    return fail(name, fmt::format("cannot be read: {}", std::strerror(errno)), "check its permissions");
+  file_bytes = static_cast<std::uint64_t>(status.st_size);
+
+  std::array<std::uint32_t, (kGlbHeaderBytes + kGlbChunkHeaderBytes) / 4> head{};
+  if (file_bytes < sizeof(head))
+    return fail(name, fmt::format("is not a bundle: only {} bytes long", file_bytes), kCopyAgain);
+  if (auto read = readAt(0, std::as_writable_bytes(std::span(head))); !read) return failAgain(read.error());
+  const auto [magic, version, length, json_length, json_type] = head;
+  if (magic != kGlbMagic)
+    return fail(name, "is not a bundle: it does not begin as a GLB file", "bake a scene with `lambent bake`");
+  if (version != 2)
+    return fail(name, fmt::format("is a GLB of version {}, not 2", version), "bake the scene again");
+  if (length > file_bytes)
+    return fail(name, fmt::format("is truncated: {} of {} bytes are there", file_bytes, length), kCopyAgain);
+  if (length < file_bytes)
+    return fail(name, fmt::format("has {} bytes after its end", file_bytes - length), kCopyAgain);
+  const std::uint64_t json_end = sizeof(head) + std::uint64_t{json_length};
+  if (json_type != kGlbJsonChunk || json_length % 4 != 0 || json_end + kGlbChunkHeaderBytes > length)
+    return fail(name, "is damaged: its JSON chunk does not fit the file", kCopyAgain);
+  std::string json(json_length, '\0');
+  if (auto read = readAt(sizeof(head), std::as_writable_bytes(std::span(json))); !read)
+    return failAgain(read.error());
+
+  std::array<std::uint32_t, kGlbChunkHeaderBytes / 4> bin{};
+  if (auto read = readAt(json_end, std::as_writable_bytes(std::span(bin))); !read)
+    return failAgain(read.error());
+  bin_offset = json_end + kGlbChunkHeaderBytes;
+  bin_length = bin[0];
+  if (bin[1] != kGlbBinChunk || bin_offset + bin_length != length)
+    return fail(name, "is damaged: its binary chunk does not fill the file", kCopyAgain);
+  return json;
+}
+
+Result<void> Reader::File::checkJson(const std::string& json) const {
+  std::array<std::uint64_t, 2> stored{};
+  if (bin_length < kIntegrityBytes)
+    return fail(path.string(), "is not a bundle", "bake it with `lambent bake`");
+  if (auto read = readAt(bin_offset, std::as_writable_bytes(std::span(stored))); !read) return read;
+  const std::uint64_t found = checksum(std::as_bytes(std::span(json)));
+  if (stored[0] != found || stored[1] != ~found)
+    return fail(path.string(), "is damaged: its description does not match its checksum", kCopyAgain);
+  return {};
+}
 
 Result<Reader> Reader::open(const std::filesystem::path& path) {
-  auto glb = GlbFile::open(path);
-  if (!glb) return failAgain(glb.error());
+  Reader reader(path);
+  File& file = *reader.file_;
+  const auto json = file.open();
+  if (!json) return failAgain(json.error());
   // Version and kind are checked first, so that a plain glTF file or a newer bundle is not reported as
   // damaged.
-  auto description = fromJson(glb->json(), glb->binaryBytes(), path.string());
-  const auto intact = checkJson(*glb);
+  auto description = fromJson(*json, file.bin_length, path.string());
   if (!description) return failAgain(description.error());
-  if (!intact) return failAgain(intact.error());
-  Reader reader(std::make_unique<File>(File{std::move(*glb), std::move(*description)}));
-  Description& d = reader.file_->description;
+  if (const auto intact = file.checkJson(*json); !intact) return failAgain(intact.error());
+  file.description = std::move(*description);
+  Description& d = file.description;
   for (std::size_t i = 0; i < d.animations.size(); ++i) {
     const auto bytes = reader.readView(static_cast<std::uint32_t>(d.views.size() - d.animations.size() + i));
     if (!bytes) return failAgain(bytes.error());
@@ -90,24 +139,11 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   return reader;
 }
 
-void Reader::countFrom(const glm::dvec3& origin) {
-  bundle::countFrom(origin, file_->description);
-}
-
-const std::filesystem::path& Reader::path() const {
-  return file_->glb.path();
-}
-const Description& Reader::description() const {
-  return file_->description;
-}
-std::uint64_t Reader::fileBytes() const {
-  return file_->glb.fileBytes();
-}
-
 Result<std::vector<std::byte>> Reader::readView(std::uint32_t index) const {
   const View& view = file_->description.views.at(index);
   std::vector<std::byte> bytes((view.length + 7) / 8 * 8);  // includes the padding, which the checksum covers
-  if (auto read = file_->glb.readBinary(view.offset, bytes); !read) return failAgain(read.error());
+  if (auto read = file_->readAt(file_->bin_offset + view.offset, bytes); !read)
+    return failAgain(read.error());
   if (checksum(bytes) != view.checksum)
     return fail(path().string(), fmt::format("is damaged: byte range {} does not match its checksum", index),
                 kCopyAgain);
@@ -172,17 +208,17 @@ Result<CellCodebook> Reader::readCodebook(GroupIndex group, CellIndex cell_index
   const CellTransfer& transfer = cell.transfers.at(transfer_index.value);
   const std::string subject =
       fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value);
-  const auto bytes = readPayload(transfer.codebook);
-  if (!bytes) return failAgain(bytes.error());
-  auto codebook = transfer::decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
+  auto codebook = readPayload(transfer.codebook).and_then([&](const Blob& bytes) {
+    return transfer::decodeCodebook(bytes, transfer.shape, transfer.clusters, subject);
+  });
   if (!codebook) return failAgain(codebook.error());
   if (codebook->axes.size() != transfer.axes)  // callers reserve memory by the description
     return fail(subject, "has a codebook of another size than its description says", "bake it again");
   CellCodebook found{std::move(*codebook), std::vector<std::uint32_t>(cell.sample_count, 0)};
   if (transfer.cluster_ids >= 0) {
-    const auto id_bytes = readPayload(static_cast<std::uint32_t>(transfer.cluster_ids));
-    if (!id_bytes) return failAgain(id_bytes.error());
-    auto ids = transfer::decodeClusterIds(*id_bytes, transfer.clusters, cell.sample_count, subject);
+    auto ids = readPayload(static_cast<std::uint32_t>(transfer.cluster_ids)).and_then([&](const Blob& bytes) {
+      return transfer::decodeClusterIds(bytes, transfer.clusters, cell.sample_count, subject);
+    });
     if (!ids) return failAgain(ids.error());
     found.cluster_of = std::move(*ids);
   }
@@ -197,11 +233,11 @@ Result<std::vector<std::uint32_t>> Reader::readPlane(GroupIndex group, CellIndex
                                                      PlaneIndex index) const {
   const WeightPlane& plane =
       cellAt(description(), group, cell).transfers.at(transfer.value).planes.at(index.value);
-  const auto bytes = readPayload(plane.payload);
-  if (!bytes) return failAgain(bytes.error());
-  return transfer::decodeWeightPlane(
-      *bytes, plane.bits, plane.count,
-      fmt::format("{}: group {} cell {} plane {}", path().string(), group.value, cell.value, index.value));
+  const auto subject =
+      fmt::format("{}: group {} cell {} plane {}", path().string(), group.value, cell.value, index.value);
+  return readPayload(plane.payload).and_then([&](const Blob& bytes) {
+    return transfer::decodeWeightPlane(bytes, plane.bits, plane.count, subject);
+  });
 }
 
 Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(GroupIndex group,
@@ -209,11 +245,10 @@ Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(GroupIndex 
   const Cell& cell = cellAt(description(), group, cell_index);
   if (cell.light_weights < 0)
     return std::vector<transfer::LightWeights>(cell.sample_count, transfer::kOneLight);
-  const auto bytes = readPayload(static_cast<std::uint32_t>(cell.light_weights));
-  if (!bytes) return failAgain(bytes.error());
-  return transfer::decodeLightWeights(
-      *bytes, cell.sample_count, cell.light_probes.size(),
-      fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value));
+  const auto subject = fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value);
+  return readPayload(static_cast<std::uint32_t>(cell.light_weights)).and_then([&](const Blob& bytes) {
+    return transfer::decodeLightWeights(bytes, cell.sample_count, cell.light_probes.size(), subject);
+  });
 }
 
 Result<std::vector<std::uint8_t>> Reader::readImportance(GroupIndex group, CellIndex cell_index) const {
@@ -229,36 +264,23 @@ Result<std::vector<std::uint8_t>> Reader::readImportance(GroupIndex group, CellI
 Result<CaptureProxy> Reader::readProxy(GroupIndex index) const {
   const Group& group = description().groups.at(index.value);
   if (group.proxy < 0) return CaptureProxy{};
-  const auto bytes = readPayload(static_cast<std::uint32_t>(group.proxy));
-  if (!bytes) return failAgain(bytes.error());
-  return decodeCaptureProxy(*bytes, group.sample_count, static_cast<std::uint32_t>(group.lights.size()),
-                            fmt::format("{}: group {}", path().string(), index.value));
+  const auto subject = fmt::format("{}: group {}", path().string(), index.value);
+  return readPayload(static_cast<std::uint32_t>(group.proxy)).and_then([&](const Blob& bytes) {
+    return decodeCaptureProxy(bytes, group.sample_count, static_cast<std::uint32_t>(group.lights.size()),
+                              subject);
+  });
 }
 
 Result<BrdfTable> Reader::readBrdfTable(std::uint32_t index) const {
-  const auto bytes = readPayload(description().brdf_tables.at(index).payload);
-  if (!bytes) return failAgain(bytes.error());
   const std::string subject = fmt::format("{}: BRDF table {}", path().string(), index);
-  auto table = decodeBrdfTable(*bytes, subject);
+  auto table = readPayload(description().brdf_tables.at(index).payload).and_then([&](const Blob& bytes) {
+    return decodeBrdfTable(bytes, subject);
+  });
   if (const std::uint32_t outputs = description().glossyOutputs();
       table && outputs != 0 && table->order * table->order != outputs)
     return fail(subject, "has other bands than the transfer that it is looked up for", "bake it again");
   return table;
 }
-
-namespace {
-
-Result<void> checkTransfer(const Reader& reader, GroupIndex group, CellIndex cell, TransferIndex transfer) {
-  if (auto found = reader.readCodebook(group, cell, transfer); !found) return failAgain(found.error());
-  const std::size_t planes =
-      cellAt(reader.description(), group, cell).transfers[transfer.value].planes.size();
-  for (std::uint32_t j = 0; j < planes; ++j)
-    if (auto codes = reader.readPlane(group, cell, transfer, PlaneIndex{j}); !codes)
-      return failAgain(codes.error());
-  return {};
-}
-
-}  // namespace
 
 Result<void> Reader::checkAll() const {
   const Description& d = description();
@@ -271,16 +293,20 @@ Result<void> Reader::checkAll() const {
     if (auto rows = readRows(draw); !rows) return failAgain(rows.error());
   for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table)
     if (auto found = readBrdfTable(table); !found) return failAgain(found.error());
-  for (std::uint32_t group = 0; group < d.groups.size(); ++group)
-    if (auto proxy = readProxy(GroupIndex{group}); !proxy) return failAgain(proxy.error());
-  for (std::uint32_t group = 0; group < d.groups.size(); ++group)
-    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
-      if (auto weights = readLightWeights(GroupIndex{group}, CellIndex{cell}); !weights)
-        return failAgain(weights.error());
-      for (std::uint32_t t = 0; t < d.groups[group].cells[cell].transfers.size(); ++t)
-        if (auto checked = checkTransfer(*this, GroupIndex{group}, CellIndex{cell}, TransferIndex{t});
-            !checked)
-          return checked;
+  for (std::uint32_t g = 0; g < d.groups.size(); ++g)
+    if (auto proxy = readProxy(GroupIndex{g}); !proxy) return failAgain(proxy.error());
+  for (std::uint32_t g = 0; g < d.groups.size(); ++g)
+    for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
+      const GroupIndex group{g};
+      const CellIndex cell{c};
+      if (auto weights = readLightWeights(group, cell); !weights) return failAgain(weights.error());
+      const std::vector<CellTransfer>& transfers = d.groups[g].cells[c].transfers;
+      for (std::uint32_t t = 0; t < transfers.size(); ++t) {
+        if (auto found = readCodebook(group, cell, TransferIndex{t}); !found) return failAgain(found.error());
+        for (std::uint32_t j = 0; j < transfers[t].planes.size(); ++j)
+          if (auto codes = readPlane(group, cell, TransferIndex{t}, PlaneIndex{j}); !codes)
+            return failAgain(codes.error());
+      }
     }
   return {};
 }

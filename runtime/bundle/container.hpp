@@ -20,13 +20,22 @@
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
+
+// Constants of the GLB container, which is little endian.
+inline constexpr std::uint32_t kGlbMagic = 0x46546C67;      // "glTF"
+inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;  // "JSON"
+inline constexpr std::uint32_t kGlbBinChunk = 0x004E4942;   // "BIN\0"
+inline constexpr std::uint64_t kGlbHeaderBytes = 12, kGlbChunkHeaderBytes = 8;
 
 // XXH3-64 is the checksum and the digest of the whole format. It is fast enough to be checked on every read.
 // It detects accidents, not forgery.
 std::uint64_t checksum(std::span<const std::byte> bytes);
+
+// Holds the bytes of a view or a payload.
+using Blob = std::vector<std::byte>;
 
 // Compresses and decompresses all payloads, with zstd. Damaged or truncated bytes are reported as an Error
 // that names `subject`.
@@ -46,16 +55,12 @@ class Reader {
   // has indices out of range.
   static Result<Reader> open(const std::filesystem::path& path);
 
-  Reader(Reader&&) noexcept;
-  Reader& operator=(Reader&&) noexcept;
-  ~Reader();
-
   // Makes the description count from another origin; that of a file that was opened is the file's.
-  void countFrom(const glm::dvec3& origin);
+  void countFrom(const glm::dvec3& origin) { bundle::countFrom(origin, file_->description); }
 
-  const std::filesystem::path& path() const;
-  const Description& description() const;
-  std::uint64_t fileBytes() const;
+  const std::filesystem::path& path() const { return file_->path; }
+  const Description& description() const { return file_->description; }
+  std::uint64_t fileBytes() const { return file_->file_bytes; }
 
   // Returns the bytes of a view without padding, after checking their checksum.
   Result<std::vector<std::byte>> readView(std::uint32_t view) const;
@@ -82,13 +87,32 @@ class Reader {
   Result<void> checkAll() const;
 
  private:
-  struct File;
-  explicit Reader(std::unique_ptr<File> file);
+  // Reads the GLB container: a 12-byte header, a JSON chunk and a binary chunk (glTF 2.0 specification,
+  // section 4). All const calls may come from any thread.
+  struct File {
+    explicit File(const std::filesystem::path& file) : path(file) {}
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File();
+
+    // Opens the file and returns the JSON text, including its padding. Fails if the file is missing,
+    // unreadable, not a GLB or truncated, has trailing bytes, or if the chunks do not fill it.
+    Result<std::string> open();
+    // Fills `out` with bytes from `offset` of the file.
+    Result<void> readAt(std::uint64_t offset, std::span<std::byte> out) const;
+    // Checks the JSON chunk against the integrity view, which holds its checksum and the complement of that
+    // (description_json.hpp).
+    Result<void> checkJson(const std::string& json) const;
+
+    std::filesystem::path path;
+    int descriptor = -1;
+    std::uint64_t file_bytes = 0, bin_offset = 0, bin_length = 0;
+    Description description;
+  };
+  explicit Reader(const std::filesystem::path& path) : file_(std::make_unique<File>(path)) {}
+
   std::unique_ptr<File> file_;
 };
-
-// Holds the bytes of a view.
-using Blob = std::vector<std::byte>;
 
 // Looks at a whole bundle before it takes the place of the old one.
 using PartCheck = std::function<Result<void>(const std::filesystem::path& part)>;

@@ -91,11 +91,11 @@ struct Image {
 
 // Tells what a payload's bytes mean; docs/format.md has the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexWeights,  // samples and weights of each vertex (weights.hpp)
+  VertexWeights,  // samples and weights of each vertex (codebook.hpp)
   Codebook,       // means, axes and quantization steps of the clusters of a cell (codebook.hpp)
   ClusterIds,     // cluster of each sample
   WeightPlane,    // one quantized weight per sample of the clusters that have this axis
-  LightWeights,   // light probes of each sample of a cell (light_weights.hpp)
+  LightWeights,   // light probes of each sample of a cell (codebook.hpp)
   CaptureProxy,   // a group in a few triangles, as other groups see it (capture_proxy.hpp)
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
   Density,        // extinction of a volume at its own resolution

@@ -1,11 +1,11 @@
 // Converts a Description to and from the JSON chunk of a bundle, a glTF 2.0 document with the extension
-// LAMBENT_radiance_transfer. gltf_json.cpp, material_json.cpp and animation_json.cpp have the glTF part,
-// transfer_json.cpp has the extension. Only this room and its tests include this header.
+// LAMBENT_radiance_transfer. gltf_json.cpp and gltf_parts_json.cpp have the glTF part, transfer_json.cpp has
+// the extension. Only this room and its tests include this header.
 //
 // Every look-up in the JSON knows its path, so an error in a damaged file reads
 // "groups[2].cells[0].sampleCount is missing". Faults are thrown as JsonFault; fromJson() turns them into an
 // Error. The fields of a struct stand in one list, a function that names key and member of each: called with
-// a FieldReader it reads and checks them, with a FieldWriter it writes them.
+// a FieldIo it reads and checks them, or writes them.
 #pragma once
 
 #include <algorithm>
@@ -166,7 +166,8 @@ inline Json valueJson(const std::vector<glm::vec3>& values) {
   for (const glm::vec3& value : values) list.push_back(vectorJson(value));
   return list;
 }
-inline Json valueJson(const glm::mat4& value) {
+template <class T>
+Json valueJson(const glm::mat<4, 4, T>& value) {
   Json list = Json::array();
   for (int i = 0; i < 16; ++i) list.push_back(glm::value_ptr(value)[i]);
   return list;
@@ -188,127 +189,122 @@ inline void readValue(const Field& field, std::vector<glm::vec3>& values) {
   values.clear();
   for (const Field& entry : field.items()) values.push_back(entry.vector<glm::vec3>());
 }
-inline void readValue(const Field& field, glm::mat4& value) {
+template <class T>
+void readValue(const Field& field, glm::mat<4, 4, T>& value) {
   const auto entries = field.items();
   if (entries.size() != 16) field.fault("is not 16 numbers");
-  for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(value)[i] = entries[i].number();
+  for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(value)[i] = static_cast<T>(entries[i].preciseNumber());
 }
 inline void readValue(const Field& field, std::map<std::string, std::string>& values) {
   values = field.settings();
 }
 
-// Fills members from the fields of an object, and checks them.
-class FieldReader {
+// Reads members from the fields of an object and checks them, or writes them as fields of an object.
+template <bool Reads>
+class FieldIo {
  public:
-  static constexpr bool kReads = true;
-  FieldReader(Field field, const Description& description)
-      : field_(std::move(field)), description_(description) {}
+  static constexpr bool kReads = Reads;
+  FieldIo(std::conditional_t<Reads, Field, Json&> object, const Description& description)
+      : object_(object), description_(description) {
+    if constexpr (!Reads) object_ = Json::object();
+  }
 
-  const Field& field() const { return field_; }
+  const Field& field() const { return object_; }
   // Returns whether an optional field is there; it is written if `said`.
-  bool has(const char* key, bool /*said*/) const { return field_.has(key); }
+  bool has(const char* key, bool said) const {
+    if constexpr (Reads) return object_.has(key);
+    return said;
+  }
   void require(bool holds, const char* key, const std::string& why) const {
-    if (!holds) field_[key].fault(why);
+    if constexpr (Reads)
+      if (!holds) object_[key].fault(why);
   }
 
   template <class T>
   void operator()(const char* key, T& value) const {
-    readValue(field_[key], value);
+    if constexpr (Reads)
+      readValue(object_[key], value);
+    else
+      object_[key] = valueJson(value);
+  }
+  void name(auto& text) const {
+    if (has("name", !text.empty())) (*this)("name", text);
+  }
+  void notNegative(const char* key, auto& value) const {
+    (*this)(key, value);
+    require(value >= 0.0f, key, "is negative");
   }
   template <class T>
   void count(const char* key, T& value, std::uint64_t most) const {
-    value = static_cast<T>(field_[key].count(most));
+    if constexpr (Reads)
+      value = static_cast<T>(object_[key].count(most));
+    else
+      object_[key] = value;
   }
   // Reads an index into a list of `size` items.
   template <class T>
   void index(const char* key, T& value, std::size_t size) const {
-    value = static_cast<T>(field_[key].index(size));
+    if constexpr (Reads)
+      value = static_cast<T>(object_[key].index(size));
+    else
+      object_[key] = value;
+  }
+  // -1 is not written.
+  void optionalIndex(const char* key, auto& value, std::size_t size) const {
+    if (has(key, value >= 0)) index(key, value, size);
   }
   // Reads the index of a payload of this type and, if given, this length.
-  template <class T>
-  void payload(const char* key, T& value, PayloadType type,
+  void payload(const char* key, auto& value, PayloadType type,
                std::optional<std::uint64_t> raw_length = {}) const {
     index(key, value, description_.payloads.size());
-    const Payload& payload = description_.payloads[static_cast<std::size_t>(value)];
-    require(payload.type == type, key, "is a payload of another type");
-    require(!raw_length || payload.raw_length == *raw_length, key, "is a payload of another size");
+    if constexpr (Reads) {
+      const Payload& payload = description_.payloads[static_cast<std::size_t>(value)];
+      require(payload.type == type, key, "is a payload of another type");
+      require(!raw_length || payload.raw_length == *raw_length, key, "is a payload of another size");
+    }
   }
   template <class Enum, std::size_t N>
   void word(const char* key, Enum& value, const std::array<const char*, N>& words) const {
-    value = field_[key].word<Enum>(words);
+    if constexpr (Reads)
+      value = object_[key].template word<Enum>(words);
+    else
+      object_[key] = words[static_cast<std::size_t>(value)];
   }
-  template <class Item, class Each>
-  void list(const char* key, std::vector<Item>& items, Each each) const {
-    for (const Field& entry : field_[key].items()) {
-      const FieldReader io(entry, description_);
-      Item item;
-      each(io, item);
-      items.push_back(std::move(item));
+  template <class Items, class Each>
+  void list(const char* key, Items& items, Each each) const {
+    if constexpr (Reads) {
+      for (const Field& entry : object_[key].items()) {
+        typename Items::value_type item;
+        each(FieldIo(entry, description_), item);
+        items.push_back(std::move(item));
+      }
+    } else {
+      Json& list = object_[key] = Json::array();
+      for (const auto& item : items) each(FieldIo(list.emplace_back(), description_), item);
     }
   }
   template <class Each>
   void child(const char* key, Each each) const {
-    each(FieldReader(field_[key], description_));
+    each(FieldIo(object_[key], description_));
+  }
+  template <class T, class Each>
+  void optional(const char* key, T& value, Each each) const {
+    if (!has(key, value.has_value())) return;
+    if constexpr (Reads) value.emplace();
+    child(key, [&](const auto& fields) { each(fields, *value); });
   }
 
  private:
-  Field field_;
+  std::conditional_t<Reads, Field, Json&> object_;
   const Description& description_;
 };
-
-// Writes members as the fields of an object.
-class FieldWriter {
- public:
-  static constexpr bool kReads = false;
-  explicit FieldWriter(Json& json) : json_(json) { json_ = Json::object(); }
-
-  bool has(const char* /*key*/, bool said) const { return said; }
-  template <class Why>
-  void require(bool /*holds*/, const char* /*key*/, const Why& /*why*/) const {}
-
-  template <class T>
-  void operator()(const char* key, const T& value) const {
-    json_[key] = valueJson(value);
-  }
-  template <class T>
-  void count(const char* key, T value, std::uint64_t /*most*/) const {
-    json_[key] = value;
-  }
-  template <class T>
-  void index(const char* key, T value, std::size_t /*size*/) const {
-    json_[key] = value;
-  }
-  template <class T>
-  void payload(const char* key, T value, PayloadType,
-               std::optional<std::uint64_t> /*raw_length*/ = {}) const {
-    json_[key] = value;
-  }
-  template <class Enum, std::size_t N>
-  void word(const char* key, Enum value, const std::array<const char*, N>& words) const {
-    json_[key] = words[static_cast<std::size_t>(value)];
-  }
-  template <class Item, class Each>
-  void list(const char* key, const std::vector<Item>& items, Each each) const {
-    Json& list = json_[key] = Json::array();
-    for (const Item& item : items) {
-      list.push_back(Json::object());
-      each(FieldWriter(list.back()), item);
-    }
-  }
-  template <class Each>
-  void child(const char* key, Each each) const {
-    each(FieldWriter(json_[key]));
-  }
-
- private:
-  Json& json_;
-};
+using FieldReader = FieldIo<true>;
 
 // Returns the object that a list of fields writes.
 template <class Fields>
-Json written(Fields fields) {
+Json written(const Description& description, Fields fields) {
   Json json;
-  fields(FieldWriter(json));
+  fields(FieldIo<false>(json, description));
   return json;
 }
 

@@ -104,9 +104,7 @@ Json nodeJson(const gltf::Node& node, const glm::dvec3& origin) {
   } else if (node.parent_from_node != glm::mat4(1.0f) || origin != glm::dvec3(0.0)) {
     glm::dmat4 parent_from_node(node.parent_from_node);
     parent_from_node[3] += glm::dvec4(origin, 0.0);
-    Json matrix = Json::array();
-    for (int i = 0; i < 16; ++i) matrix.push_back(glm::value_ptr(parent_from_node)[i]);
-    json["matrix"] = std::move(matrix);
+    json["matrix"] = valueJson(parent_from_node);
   }
   if (node.mesh >= 0) json["mesh"] = node.mesh;
   if (node.camera >= 0) json["camera"] = node.camera;
@@ -115,21 +113,19 @@ Json nodeJson(const gltf::Node& node, const glm::dvec3& origin) {
   return json;
 }
 
-gltf::Node readNode(const Field& field, const Description& d, std::size_t node_count) {
-  gltf::Node node;
+// Reads the rest of a node whose place among the others is known.
+void readNode(const Field& field, const Description& d, gltf::Node& node) {
+  const glm::dvec3 origin = node.parent < 0 ? d.origin : glm::dvec3(0.0);
   if (field.has("name")) node.name = field["name"].text();
-  for (const Field& child : field.list("children"))
-    node.children.push_back(static_cast<std::int32_t>(child.index(node_count)));
-  if (field.has("matrix")) {
-    const auto entries = field["matrix"].items();
-    if (entries.size() != 16) field["matrix"].fault("is not 16 numbers");
-    for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(node.parent_from_node)[i] = entries[i].number();
-  }
+  glm::dmat4 parent_from_node(1.0);
+  if (field.has("matrix")) readValue(field["matrix"], parent_from_node);
+  parent_from_node[3] -= glm::dvec4(origin, 0.0);
+  node.parent_from_node = glm::mat4(parent_from_node);
   if (field.has("rotation")) {
     const auto q = field["rotation"].vector<glm::vec4>();
     if (std::abs(glm::length(q) - 1.0f) > 1e-3f) field["rotation"].fault("is not a unit quaternion");
-    node.trs = gltf::Trs{field["translation"].vector<glm::vec3>(), glm::quat(q.w, q.x, q.y, q.z),
-                         field["scale"].vector<glm::vec3>()};
+    node.trs = gltf::Trs{glm::vec3(field["translation"].vector<glm::dvec3>() - origin),
+                         glm::quat(q.w, q.x, q.y, q.z), field["scale"].vector<glm::vec3>()};
     node.parent_from_node = node.trs->matrix();
   }
   if (field.has("mesh")) node.mesh = static_cast<std::int32_t>(field["mesh"].index(d.meshes.size()));
@@ -139,19 +135,6 @@ gltf::Node readNode(const Field& field, const Description& d, std::size_t node_c
         static_cast<std::int32_t>(field["extensions"][kPunctualLights]["light"].index(d.lights.size()));
   node.movable = field.has("extras") && field["extras"].has("lambent") &&
                  field["extras"]["lambent"].has("movable") && field["extras"]["lambent"]["movable"].flag();
-  return node;
-}
-
-// Reads the place of a node without a parent again, relative to the origin.
-void readPlace(const Field& field, const glm::dvec3& origin, gltf::Node& node) {
-  if (node.animated) field.fault("is moved by an animation, but stands at the origin");
-  glm::dvec3 place(0.0);
-  if (field.has("translation")) place = field["translation"].vector<glm::dvec3>();
-  if (field.has("matrix"))
-    for (std::size_t i = 0; i < 3; ++i)
-      place[static_cast<int>(i)] = field["matrix"].items()[12 + i].preciseNumber();
-  node.parent_from_node[3] = glm::vec4(glm::vec3(place - origin), 1.0f);
-  if (node.trs) node.trs->translation = glm::vec3(node.parent_from_node[3]);
 }
 
 // Sets parents from children. Throws JsonFault if nodes do not form a forest, since later code chains
@@ -189,7 +172,7 @@ std::size_t samplerIndex(const gltf::Sampler& sampler, std::vector<gltf::Sampler
 // --- cameras and lights ---
 
 void cameraFields(const auto& io, auto& camera) {
-  if (io.has("name", !camera.name.empty())) io("name", camera.name);
+  io.name(camera.name);
   io.word("type", camera.perspective, kCameraTypes);
   io.child(kCameraTypes[camera.perspective ? 1 : 0], [&](const auto& lens) {
     lens("znear", camera.znear);
@@ -205,22 +188,16 @@ void cameraFields(const auto& io, auto& camera) {
 }
 
 void lightFields(const auto& io, auto& light) {
-  if (io.has("name", !light.name.empty())) io("name", light.name);
+  io.name(light.name);
   io.word("type", light.type, kLightTypes);
   io("color", light.color);
   io.require(light.color.x >= 0.0f && light.color.y >= 0.0f && light.color.z >= 0.0f, "color", "is negative");
-  io("intensity", light.intensity);
-  io.require(light.intensity >= 0.0f, "intensity", "is negative");
-  if (io.has("range", light.range_m > 0.0f)) {
-    io("range", light.range_m);
-    io.require(light.range_m >= 0.0f, "range", "is negative");
-  }
+  io.notNegative("intensity", light.intensity);
+  if (io.has("range", light.range_m > 0.0f)) io.notNegative("range", light.range_m);
   if (light.type != gltf::Light::Type::Spot) return;
   io.child("spot", [&](const auto& spot) {
-    spot("innerConeAngle", light.inner_cone_rad);
-    spot.require(light.inner_cone_rad >= 0.0f, "innerConeAngle", "is negative");
-    spot("outerConeAngle", light.outer_cone_rad);
-    spot.require(light.outer_cone_rad >= 0.0f, "outerConeAngle", "is negative");
+    spot.notNegative("innerConeAngle", light.inner_cone_rad);
+    spot.notNegative("outerConeAngle", light.outer_cone_rad);
   });
   io.require(
       light.inner_cone_rad < light.outer_cone_rad && light.outer_cone_rad <= std::numbers::pi_v<float> / 2,
@@ -272,12 +249,12 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
   std::set<std::string> used{std::string(kExtensionName)};
   writeList(document, "materials", d.materials,
             [&](const gltf::Material& material) { return materialJson(material, used); });
-  writeList(document, "cameras", d.cameras, [](const gltf::Camera& camera) {
-    return written([&](const auto& io) { cameraFields(io, camera); });
+  writeList(document, "cameras", d.cameras, [&](const gltf::Camera& camera) {
+    return written(d, [&](const auto& io) { cameraFields(io, camera); });
   });
   if (!d.lights.empty()) {
-    writeList(document["extensions"][kPunctualLights], "lights", d.lights, [](const gltf::Light& light) {
-      return written([&](const auto& io) { lightFields(io, light); });
+    writeList(document["extensions"][kPunctualLights], "lights", d.lights, [&](const gltf::Light& light) {
+      return written(d, [&](const auto& io) { lightFields(io, light); });
     });
     used.insert(kPunctualLights);
   }
@@ -335,9 +312,14 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
     d.meshes.push_back(std::move(mesh));
   }
 
+  const Field extension = document["extensions"][std::string(kExtensionName).c_str()];
+  if (extension.has("origin")) d.origin = extension["origin"].vector<glm::dvec3>();
   const auto nodes = document.list("nodes");
-  for (const Field& node : nodes) d.nodes.push_back(readNode(node, d, nodes.size()));
+  for (const Field& node : nodes)
+    for (auto& children = d.nodes.emplace_back().children; const Field& child : node.list("children"))
+      children.push_back(static_cast<std::int32_t>(child.index(nodes.size())));
   linkParents(document, d.nodes);
+  for (std::size_t i = 0; i < nodes.size(); ++i) readNode(nodes[i], d, d.nodes[i]);
   const auto animations = document.list("animations");
   if (animations.size() > d.views.size()) document["animations"].fault("are more than the bufferViews");
   for (std::size_t i = 0; i < animations.size(); ++i) {
@@ -345,15 +327,11 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
     d.animations.push_back(readAnimation(animations[i], accessors, view, d.views[view].length, d.nodes));
     for (const gltf::AnimationChannel& channel : d.animations.back().channels) {
       gltf::Node& node = d.nodes[channel.node];
+      if (node.parent < 0 && extension.has("origin"))
+        nodes[channel.node].fault("is moved by an animation, but stands at the origin");
       node.animated = true;
       if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() has checked that the node has no matrix
     }
-  }
-  const Field extension = document["extensions"][std::string(kExtensionName).c_str()];
-  if (extension.has("origin")) {
-    d.origin = extension["origin"].vector<glm::dvec3>();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      if (d.nodes[i].parent < 0) readPlace(nodes[i], d.origin, d.nodes[i]);
   }
   const auto scenes = document.list("scenes");
   if (document.has("scenes") && scenes.empty()) document["scenes"].fault("are none");

@@ -66,18 +66,6 @@ glm::dquat quaternion(const Vector<4>& xyzw) {
   return {xyzw.w, xyzw.x, xyzw.y, xyzw.z};
 }
 
-// Evaluates glTF 2.0, C.4, along the shorter of the two arcs.
-glm::dquat slerp(const glm::dquat& from, glm::dquat to, double share) {
-  double cosine = glm::dot(from, to);
-  if (cosine < 0.0) {
-    to = -to;
-    cosine = -cosine;
-  }
-  const double angle = std::acos(std::min(cosine, 1.0)), sine = std::sin(angle);
-  if (sine < 1e-6) return from * (1.0 - share) + to * share;
-  return from * (std::sin((1.0 - share) * angle) / sine) + to * (std::sin(share * angle) / sine);
-}
-
 }  // namespace
 
 glm::vec3 vectorAt(const AnimationChannel& channel, float time_s) {
@@ -99,7 +87,8 @@ glm::quat rotationAt(const AnimationChannel& channel, float time_s) {
   const glm::dquat from = unit(quaternion(valueOf<4>(channel, at.first)));
   if (at.share == 0.0 || channel.interpolation == Interpolation::Step) return glm::quat(from);
   if (channel.interpolation == Interpolation::Linear)
-    return glm::quat(unit(slerp(from, unit(quaternion(valueOf<4>(channel, at.first + 1))), at.share)));
+    // glTF 2.0, C.4, along the shorter of the two arcs.
+    return glm::quat(unit(glm::slerp(from, unit(quaternion(valueOf<4>(channel, at.first + 1))), at.share)));
   // A spline may pass through 0, where it defines no rotation.
   const glm::dquat q = quaternion(cubicAt<4>(channel, at));
   return glm::quat(glm::length(q) > 1e-6 ? unit(q) : from);

@@ -176,6 +176,7 @@ struct Light {
   float intensity = 1.0f;                                   // candela (W/sr); lux (W/m²) if directional
   float range_m = 0.0f;                                     // 0 for no limit
   float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // half angles of a spot, inner < outer <= pi/2
+  bool operator==(const Light&) const = default;
 };
 
 // Holds the keyframes of one node's translation, rotation or scale. Values are stored as in glTF: 3 or 4

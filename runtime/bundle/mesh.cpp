@@ -105,24 +105,15 @@ Result<std::vector<Vector>> readAttribute(const draco::Mesh& mesh, std::int32_t 
   return values;
 }
 
-Result<void> normalize(std::vector<glm::vec3>& normals, const std::string& subject) {
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const float length = glm::length(normals[i]);
-    if (!(length > 1e-6f) || !std::isfinite(length))
-      return fail(subject, fmt::format("has a normal without direction at vertex {}", i), kReencode);
-    normals[i] /= length;
-  }
-  return {};
-}
-
-// Gives tangents unit length and a w of exactly 1 or -1, since Draco is lossy.
-Result<void> normalize(std::vector<glm::vec4>& tangents, const std::string& subject) {
-  for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const glm::vec3 direction(tangents[i]);
+// Gives normals, or the first three parts of tangents, unit length, since Draco is lossy.
+template <typename Vector>
+Result<void> normalize(std::vector<Vector>& directions, const char* name, const std::string& subject) {
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const glm::vec3 direction(directions[i]);
     const float length = glm::length(direction);
     if (!(length > 1e-6f) || !std::isfinite(length))
-      return fail(subject, fmt::format("has a tangent without direction at vertex {}", i), kReencode);
-    tangents[i] = glm::vec4(direction / length, tangents[i].w < 0.0f ? -1.0f : 1.0f);
+      return fail(subject, fmt::format("has a {} without direction at vertex {}", name, i), kReencode);
+    for (int c = 0; c < 3; ++c) directions[i][c] = direction[c] / length;
   }
   return {};
 }
@@ -150,24 +141,24 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
     return {};
   };
   Result<void> done = take(data.positions, attributes.position, "positions");
-  if (done && attributes.normal >= 0) done = take(data.normals, attributes.normal, "normals");
-  if (done && attributes.texcoord0 >= 0)
-    done = take(data.texcoords0, attributes.texcoord0, "texture coordinates");
-  if (done && attributes.texcoord1 >= 0)
-    done = take(data.texcoords1, attributes.texcoord1, "texture coordinates");
-  if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colors");
+  const auto takeIfAny = [&](auto& target, std::int32_t id, const char* name) {
+    if (done && id >= 0) done = take(target, id, name);
+  };
+  std::vector<glm::vec1> weights;
+  takeIfAny(data.normals, attributes.normal, "normals");
+  takeIfAny(data.texcoords0, attributes.texcoord0, "texture coordinates");
+  takeIfAny(data.texcoords1, attributes.texcoord1, "texture coordinates");
+  takeIfAny(data.colors, attributes.color0, "colors");
+  takeIfAny(data.tangents, attributes.tangent, "tangents");
+  takeIfAny(weights, attributes.normal_weight, "weights of normals");
   if (done) normalizeColors(mesh, attributes.color0, data.colors);
-  if (done && attributes.tangent >= 0) done = take(data.tangents, attributes.tangent, "tangents");
-  if (done && attributes.normal_weight >= 0) {
-    std::vector<glm::vec1> weights;
-    done = take(weights, attributes.normal_weight, "weights of normals");
-    if (done && data.normals.empty())
-      done = fail(subject, "has weights of normals, but no normals", kReencode);
-    for (const glm::vec1& weight : weights) data.normal_weights.push_back(glm::clamp(weight.x, 1e-3f, 1.0f));
-  }
-  if (done) done = normalize(data.normals, subject);
-  if (done) done = normalize(data.tangents, subject);
+  if (done && attributes.normal_weight >= 0 && data.normals.empty())
+    done = fail(subject, "has weights of normals, but no normals", kReencode);
+  for (const glm::vec1& weight : weights) data.normal_weights.push_back(glm::clamp(weight.x, 1e-3f, 1.0f));
+  if (done) done = normalize(data.normals, "normal", subject);
+  if (done) done = normalize(data.tangents, "tangent", subject);
   if (!done) return failAgain(std::move(done.error()));
+  for (glm::vec4& tangent : data.tangents) tangent.w = tangent.w < 0.0f ? -1.0f : 1.0f;
   for (glm::vec4& color : data.colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
 
   data.indices.reserve(std::size_t{mesh.num_faces()} * 3);

@@ -6,7 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
 
@@ -185,16 +185,12 @@ void groupLightFields(const Io& io, auto& light, const Description& d) {
 }
 
 void pictureErrorFields(const auto& io, auto& error) {
-  const auto share = [&](const char* key, auto& value) {
-    io(key, value);
-    io.require(value >= 0.0f, key, "is negative");
-  };
-  share("all", error.all);
-  share("samples", error.samples);
-  share("codes", error.codes);
-  share("interpolation", error.interpolation);
+  io.notNegative("all", error.all);
+  io.notNegative("samples", error.samples);
+  io.notNegative("codes", error.codes);
+  io.notNegative("interpolation", error.interpolation);
   io.count("points", error.points, 0xffffffffu);
-  if (io.has("bound", error.bound > 0.0f)) share("bound", error.bound);
+  if (io.has("bound", error.bound > 0.0f)) io.notNegative("bound", error.bound);
 }
 
 template <class Io>
@@ -223,8 +219,7 @@ void volumeFields(const auto& io, auto& volume, std::uint32_t samples) {
              "is flat");
   bitsField(io, volume.bits);
   io.payload("density", volume.density, PayloadType::Density, countOf(volume.size) * volume.bits / 8);
-  io("densityMax", volume.density_max);
-  io.require(volume.density_max >= 0.0f, "densityMax", "is negative");
+  io.notNegative("densityMax", volume.density_max);
   io("albedo", volume.albedo);
   for (int c = 0; c < 3; ++c)
     io.require(volume.albedo[c] >= 0.0f && volume.albedo[c] <= 1.0f, "albedo", "is not between 0 and 1");
@@ -243,23 +238,15 @@ void neighborhoodFields(const auto& io, auto& grid) {
 }
 
 // The grids of a group, whose cells have been read.
-template <class Io>
-void gridFields(const Io& io, auto& group, const Description& d) {
+void gridFields(const auto& io, auto& group, const Description& d) {
   const std::uint32_t in_volume = group.samplesOf(transfer::Domain::Voxel);
-  if (io.has("volume", group.volume.has_value())) {
-    if constexpr (Io::kReads) group.volume.emplace();
-    io.child("volume", [&](const auto& fields) { volumeFields(fields, *group.volume, in_volume); });
-  } else {
-    io.require(in_volume == 0, "cells", "are of a volume that is not there");
-  }
-  if (io.has("within", group.within >= 0)) {
-    io.require(group.volume.has_value(), "within", "is there without a volume");
-    io.index("within", group.within, d.groups.size());
-  }
-  if (io.has("neighborhood", group.neighborhood.has_value())) {
-    if constexpr (Io::kReads) group.neighborhood.emplace();
-    io.child("neighborhood", [&](const auto& fields) { neighborhoodFields(fields, *group.neighborhood); });
-  }
+  io.optional("volume", group.volume,
+              [&](const auto& fields, auto& volume) { volumeFields(fields, volume, in_volume); });
+  io.require(group.volume || in_volume == 0, "cells", "are of a volume that is not there");
+  io.require(group.volume || !io.has("within", false), "within", "is there without a volume");
+  io.optionalIndex("within", group.within, d.groups.size());
+  io.optional("neighborhood", group.neighborhood,
+              [](const auto& fields, auto& grid) { neighborhoodFields(fields, grid); });
   io.require(group.samplesOf(transfer::Domain::GridPoint) ==
                  (group.neighborhood ? countOf(group.neighborhood->size) : 0),
              "cells", "do not hold the points of the neighborhood");
@@ -268,7 +255,7 @@ void gridFields(const Io& io, auto& group, const Description& d) {
 template <class Io>
 void groupFields(const Io& io, auto& group, const Description& d) {
   io("name", group.name);
-  if (io.has("node", group.node >= 0)) io.index("node", group.node, d.nodes.size());
+  io.optionalIndex("node", group.node, d.nodes.size());
   glm::dvec3 translation = glm::dvec3(group.rest_translation) + d.origin;
   io("restTranslation", translation);
   const glm::quat& rest = group.rest_rotation;
@@ -295,10 +282,8 @@ void groupFields(const Io& io, auto& group, const Description& d) {
   });
   io.require(next == group.sample_count, "cells", "do not hold all samples of the group");
   gridFields(io, group, d);
-  if (io.has("pictureError", group.picture_error.has_value())) {
-    if constexpr (Io::kReads) group.picture_error.emplace();
-    io.child("pictureError", [&](const auto& fields) { pictureErrorFields(fields, *group.picture_error); });
-  }
+  io.optional("pictureError", group.picture_error,
+              [](const auto& fields, auto& error) { pictureErrorFields(fields, error); });
   if constexpr (Io::kReads) {
     // Some cell must use each light probe, or light would be captured in vain. A group without cells has one,
     // too.
@@ -412,7 +397,7 @@ void extensionFields(const Io& io, auto& d) {
 }  // namespace
 
 Json writeTransfer(const Description& d) {
-  return written([&](const auto& io) { extensionFields(io, d); });
+  return written(d, [&](const auto& io) { extensionFields(io, d); });
 }
 
 void readTransfer(const Field& extension, Description& d) {

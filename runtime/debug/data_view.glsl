@@ -1,46 +1,45 @@
-// Draws a number of a sample as a colour, or the wires of triangles: corner by corner, without an index buffer,
-// so that each corner knows the other two. With LAMBENT_FINEST_TEXELS, for pictures that are compared, it
-// writes the number itself to all channels, or for clusters the cluster, the cell and 0. Alpha is coverage, for
-// wires that of the wires.
+// Draws a number of a sample as a colour, the wires of triangles, or which draw is visible at one pixel: corner by
+// corner, without an index buffer, so that each corner knows the other two. With LAMBENT_FINEST_TEXELS, for pictures
+// that are compared, it writes the number itself to all channels, or for clusters the cluster, the cell and 0. Alpha is
+// coverage, for wires that of the wires.
 #include "surface_shared.h"
-#include "data_view_shared.h"
 #include "transfer_values_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
 layout(location = 0) uniform uint draw_index;
 
 #ifdef LAMBENT_VERTEX
-layout(std140, binding = kBindView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-  vec4 eye;
-};
+#include "view_block.glsl"
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
-layout(std430, binding = kBindDataRows) readonly buffer Rows { uint rows[]; };
-layout(std430, binding = kBindDataValues) readonly buffer Values { SampleValue values[]; };
-layout(std430, binding = kBindDataDraws) readonly buffer DataDraws { DataDraw data_draws[]; };
+layout(std430, binding = 3) readonly buffer Rows { uint rows[]; };
+layout(std430, binding = 4) readonly buffer Values { SampleValue values[]; };
+// The draw's rows, laid out as for glossy draws: first word (kAbsent: none), entries, vertices; w: first word of indices.
+layout(location = 3) uniform uvec4 rows_of_draw;
+layout(location = 4) uniform uint first_value;  // index of the value of sample 0 of its rows
 layout(location = 0) out vec3 barycentric;
 layout(location = 1) out vec3 position_vs;
 layout(location = 2) out vec2 looks_at;
 layout(location = 3) out float vertex_alpha;
 layout(location = 4) out vec2 value;  // value times the share of samples that have one, and that share
 layout(location = 5) flat out uvec3 clusters;
+layout(location = 6) out vec3 normal_group;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
 
 #ifdef LAMBENT_VALUES
 // Computes the mean over the vertex's samples, and returns the cluster of the sample with the largest weight.
-uint gather(DataDraw draw, uint vertex, out vec2 mean) {
+uint gather(uint vertex, out vec2 mean) {
   mean = vec2(0.0);
-  if (draw.rows_word == kAbsent) return kNoCluster;
-  uint samples_word = draw.rows_word + draw.vertex_count + 1u, weights_word = samples_word + draw.row_entries;
-  uint end = rows[draw.rows_word + vertex + 1u], cluster = kNoCluster;
+  uint first_row = rows_of_draw.x;
+  if (first_row == kAbsent) return kNoCluster;
+  uint samples_word = first_row + rows_of_draw.z + 1u, weights_word = samples_word + rows_of_draw.y;
+  uint end = rows[first_row + vertex + 1u], cluster = kNoCluster;
   float total = 0.0, most = 0.0;
-  for (uint entry = rows[draw.rows_word + vertex]; entry < end; ++entry) {
+  for (uint entry = rows[first_row + vertex]; entry < end; ++entry) {
     uint pair = rows[weights_word + (entry >> 1u)];
     float weight = float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
-    SampleValue one = values[draw.first_value + rows[samples_word + entry]];
+    SampleValue one = values[first_value + rows[samples_word + entry]];
     total += weight;
     if (one.cluster == kNoCluster) continue;
     mean += weight * vec2(uintBitsToFloat(one.value_bits), 1.0);
@@ -55,8 +54,7 @@ uint gather(DataDraw draw, uint vertex, out vec2 mean) {
 #endif
 
 void main() {
-  DataDraw draw = data_draws[draw_index];
-  uint corner = uint(gl_VertexID) % 3u, first = draw.indices_word + uint(gl_VertexID) - corner;
+  uint corner = uint(gl_VertexID) % 3u, first = rows_of_draw.w + uint(gl_VertexID) - corner;
   uint vertex = geometry[first + corner];
   barycentric = vec3(corner == 0u, corner == 1u, corner == 2u);
   value = vec2(0.0);
@@ -64,7 +62,7 @@ void main() {
 #ifdef LAMBENT_VALUES
   vec2 other;
   for (uint c = 0u; c < 3u; ++c) {
-    uint cluster = gather(draw, geometry[first + c], other);
+    uint cluster = gather(geometry[first + c], other);
     clusters[c] = cluster;
     if (c == corner) value = other;
   }
@@ -77,6 +75,8 @@ void main() {
   vertex_alpha = 1.0;
   if (draws[draw_index].colors_word != kAbsent)
     vertex_alpha = unpackUnorm2x16(geometry[draws[draw_index].colors_word + 2u * vertex + 1u]).y;
+  normal_group = draws[draw_index].facing *
+                 (mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
   vec4 place = view_from_world * (draws[draw_index].world_from_mesh * vec4(geometry3(draws[draw_index].positions_word + 3u * vertex), 1.0));
   position_vs = place.xyz;
   gl_Position = clip_from_view * place;
@@ -94,6 +94,27 @@ layout(location = 2) in vec2 looks_at;
 layout(location = 3) in float vertex_alpha;
 layout(location = 4) in vec2 value;
 layout(location = 5) flat in uvec3 clusters;
+layout(location = 6) in vec3 normal_group;
+
+#ifdef LAMBENT_PICKED
+layout(location = 0) out uvec4 seen;
+
+// Cut-outs follow the same rule as in surface.frag. A blended surface counts where it is visible at all.
+void main() {
+  const float kLeastSeen = 0.5 / 255.0;
+#ifdef LAMBENT_FINEST_TEXELS
+  float texel = textureLod(base_color_texture, looks_at, 0.0).a;
+#else
+  float texel = texture(base_color_texture, looks_at).a;
+#endif
+  float alpha = draws[draw_index].base_color.a * vertex_alpha;
+  if (draws[draw_index].base_color_texture.set != kAbsent) alpha *= texel;
+  uint mode = draws[draw_index].alpha_mode;
+  if (mode == kAlphaMask && alpha < draws[draw_index].alpha_cutoff) discard;
+  if (mode == kAlphaBlend && alpha < kLeastSeen) discard;
+  seen = uvec4(draw_index, floatBitsToUint(normal_group));
+}
+#else
 layout(location = 0) out vec4 color;
 
 // Surfaces without a number are grey, lit from the eye so that their shape can be seen.
@@ -142,4 +163,5 @@ void main() {
 #endif
 #endif
 }
+#endif
 #endif

@@ -1,13 +1,8 @@
 // Draws a line as a quad of its width in pixels, clipped at the plane of the eye; `strength` is lower for hidden
 // parts.
 #ifdef LAMBENT_VERTEX
-#include "surface_shared.h"
+#include "view_block.glsl"
 
-layout(std140, binding = kBindView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-  vec4 eye;
-};
 struct Line {
   vec4 from_and_width;  // world position; w: width in pixels
   vec4 to;

@@ -10,27 +10,13 @@ struct Sign {
 layout(std430, binding = 1) readonly buffer Signs { Sign signs[]; };
 
 #ifdef LAMBENT_VERTEX
-#include "surface_shared.h"
+#include "view_block.glsl"
+#include "cube_texel.glsl"
 
-layout(std140, binding = kBindView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-  vec4 eye;
-};
 layout(location = 0) out vec3 direction;  // from the centre of the ball, world axes
 layout(location = 1) flat out int sign_index;
 
 const int kBallCells = 10;
-
-// Does the same as sh::cubeFaceDirection.
-vec3 faceDirection(int face, vec2 st) {
-  if (face == 0) return vec3(1.0, -st.y, -st.x);
-  if (face == 1) return vec3(-1.0, -st.y, st.x);
-  if (face == 2) return vec3(st.x, 1.0, st.y);
-  if (face == 3) return vec3(st.x, -1.0, -st.y);
-  if (face == 4) return vec3(st.x, -st.y, 1.0);
-  return vec3(-st.x, -st.y, -1.0);
-}
 
 void main() {
   const vec2 kCorners[6] = vec2[6](vec2(0, 0), vec2(1, 0), vec2(0, 1), vec2(0, 1), vec2(1, 0), vec2(1, 1));
@@ -39,7 +25,7 @@ void main() {
   vec2 st = 2.0 * (cell + kCorners[gl_VertexID % 6]) / float(kBallCells) - 1.0;
   sign_index = gl_InstanceID;
   vec4 place_and_radius = signs[gl_InstanceID].place_and_radius;
-  direction = normalize(faceDirection(face, tan(0.78539816 * st)));
+  direction = normalize(cubeFaceDirection(face, tan(0.78539816 * st)));
   vec3 place = place_and_radius.xyz + place_and_radius.w * direction;
   gl_Position = clip_from_view * (view_from_world * vec4(place, 1.0));
 }

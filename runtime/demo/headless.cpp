@@ -13,13 +13,11 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "runtime/demo/options.hpp"
 #include "runtime/demo/stage.hpp"
-#include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/frame/frame_parts.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/gpu/pass_timers.hpp"
-#include "runtime/shadows/key_shadows.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/world/frame_times.hpp"
 #include "runtime/world/world.hpp"
@@ -28,39 +26,21 @@ namespace lambent::demo {
 
 namespace {
 
-struct FrameReport {
-  std::vector<gpu::PassTime> passes;
-  frame::StepCounts counts;
-};
+using Json = nlohmann::ordered_json;
 
 struct Report {
-  FrameReport first_frame, last_frame;
+  Json first_frame, last_frame;
   std::vector<double> frame_ms;      // per frame, until the GPU was done
   std::vector<double> processor_ms;  // per frame, of all threads; where the processor draws, its cost
   std::uint32_t rest_steps = 0;      // steps after the last frame until no light changed any more
   double load_ms = 0.0;              // from opening the bundles until everything was resident
-  std::uint64_t bytes_resident = 0;
-  frame::StreamingStatus streaming;
-  std::uint32_t negative_pixels = 0;
-  float exposure_ev = 0.0f;
-  std::uint64_t gl_errors = 0;
-  std::vector<spec::Disc> keys;  // of the last frame, in world axes
-  std::uint64_t key_shadow_bytes = 0;
 };
-
-using Json = nlohmann::ordered_json;
 
 // Leaves out the first frame, which also waits for what is made once.
 frame::FrameTimes timesOf(const std::vector<double>& of_frames) {
   frame::FrameTimes times(of_frames.size());
   for (std::size_t i = of_frames.size() > 1 ? 1 : 0; i < of_frames.size(); ++i) times.add(of_frames[i]);
   return times;
-}
-
-Json countsJson(const frame::StepCounts& counts) {
-  Json json = Json::object();
-  for (const frame::StepCounts::Count& count : counts) json[std::string(count.name)] = count.value;
-  return json;
 }
 
 Json frameTimesJson(const frame::FrameTimes& times) {
@@ -100,11 +80,14 @@ Json streamingJson(const frame::StreamingStatus& status) {
           {"bundles", bundles}};
 }
 
-Json frameJson(const FrameReport& frame) {
-  Json list = Json::array();
+// Lists what the last frame cost and counted.
+Json frameJson(frame::Frame& frame) {
+  Json list = Json::array(), counts = Json::object();
+  for (const frame::StepCounts::Count& count : frame.counts()) counts[std::string(count.name)] = count.value;
+  frame.timers().finish();
   gpu::Counters total;
   double cpu_ms = 0.0, gpu_ms = 0.0;
-  for (const gpu::PassTime& pass : frame.passes) {
+  for (const gpu::PassTime& pass : frame.timers().latest()) {
     list.push_back({{"name", pass.name},
                     {"cpu_ms", pass.cpu_ms},
                     {"gpu_ms", pass.gpu_ms < 0.0 ? Json() : Json(pass.gpu_ms)},
@@ -120,7 +103,7 @@ Json frameJson(const FrameReport& frame) {
     gpu_ms += std::max(pass.gpu_ms, 0.0);
   }
   return {{"passes", list},
-          {"counts", countsJson(frame.counts)},
+          {"counts", counts},
           {"cpu_ms", cpu_ms},
           {"gpu_ms", gpu_ms},
           {"dispatches", total.dispatches},
@@ -129,7 +112,8 @@ Json frameJson(const FrameReport& frame) {
 }
 
 // Lists key lights, brightest first, with the angles of light options: azimuth 0 is +Z, 90 is +X.
-Json keysJson(std::vector<spec::Disc> keys) {
+Json keysJson(std::span<const spec::Disc> of_frame) {
+  std::vector<spec::Disc> keys(of_frame.begin(), of_frame.end());
   const auto flux = [](const spec::Disc& key) {
     const float half = std::sin(0.5f * key.radius_rad);
     return half * half * (key.radiance.r + key.radiance.g + key.radiance.b);
@@ -155,7 +139,9 @@ Json settingsJson(const frame::FrameSettings& settings) {
 // Makes the output of --json: the arguments of the run, the passes of the first and the last frame (times in
 // milliseconds, what each issued, what was captured and shaded), frame times, what was loaded, bytes
 // resident, negative pixels, and the device.
-std::string reportJson(const Options& options, const gpu::DeviceInfo& device, const Report& report) {
+std::string reportJson(const Options& options, const gpu::Context& context, Stage& stage,
+                       const frame::Frame& frame, const Report& report) {
+  const frame::StreamingStatus streaming = stage.world().streaming();
   Json bundles = Json::array();
   for (const std::filesystem::path& path : options.bundles) bundles.push_back(path.string());
   const Json json = {{"program", "lambent-demo"},
@@ -164,8 +150,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"picture", options.headless ? Json(options.headless->string()) : Json()},
                      {"size", {options.size.width, options.size.height}},
                      {"lights", options.light_words},
-                     {"key_lights", keysJson(report.keys)},
-                     {"key_shadow_bytes", report.key_shadow_bytes},
+                     {"key_lights", keysJson(stage.environment().keys())},
+                     {"key_shadow_bytes", frame.parts().key_shadows.bytesResident()},
                      {"rotate_light_deg", options.rotate_light_deg},
                      {"fade_to", options.fade_words},
                      {"fade", options.fade},
@@ -173,20 +159,20 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"settings", settingsJson(options.settings)},
                      {"view", frame::wordOf(options.view)},
                      {"lamps", options.lamps},
-                     {"exposure_ev", options.linear ? Json() : Json(report.exposure_ev)},
-                     {"renderer", device.renderer},
-                     {"gl_version", device.version},
-                     {"gl_errors", report.gl_errors},
+                     {"exposure_ev", options.linear ? Json() : Json(frame.exposureEv())},
+                     {"renderer", context.info().renderer},
+                     {"gl_version", context.info().version},
+                     {"gl_errors", context.errors()},
                      {"load_ms", report.load_ms},
-                     {"bytes_resident", report.bytes_resident},
-                     {"streaming", streamingJson(report.streaming)},
-                     {"negative_pixels", report.negative_pixels},
+                     {"bytes_resident", streaming.resident_bytes + frame.parts().volume.textureBytes()},
+                     {"streaming", streamingJson(streaming)},
+                     {"negative_pixels", frame.negativePixels()},
                      {"frames", options.frames},
                      {"frame_ms", frameTimesJson(timesOf(report.frame_ms))},
                      {"frame_processor_ms", timesOf(report.processor_ms).median()},
                      {"rest_steps", report.rest_steps},
-                     {"first_frame", frameJson(report.first_frame)},
-                     {"last_frame", frameJson(report.last_frame)}};
+                     {"first_frame", report.first_frame},
+                     {"last_frame", report.last_frame}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -232,14 +218,6 @@ Result<void> writePicture(const frame::Frame& frame, const Options& options, std
   return written;
 }
 
-// Reports a picture that the device cannot hold before anything is loaded.
-Result<void> checkSize(const spec::Size& size, std::uint32_t limit) {
-  if (size.width > limit || size.height > limit)
-    return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
-                "ask for a smaller picture");
-  return {};
-}
-
 }  // namespace
 
 Result<void> runHeadless(const Options& options) {
@@ -247,17 +225,18 @@ Result<void> runHeadless(const Options& options) {
   if (!environment) return failAgain(environment.error());
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failAgain(context.error());
-  if (Result<void> fits = checkSize(options.size, context->info().max_texture_side); !fits) return fits;
+  // A picture that the device cannot hold is reported before anything is loaded.
+  const std::uint32_t limit = context->info().max_texture_side;
+  if (options.size.width > limit || options.size.height > limit)
+    return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
+                "ask for a smaller picture");
 
   const auto start = Clock::now();
   Report report;
   Result<Stage> stage = Stage::create(options, std::move(*environment));
   if (!stage) return failAgain(stage.error());
   frame::World& world = stage->world();
-  const Result<ViewController> controller =
-      ViewController::create(world, options.camera, options.size.aspect());
-  if (!controller) return failAgain(controller.error());
-  const Result<spec::View> first_view = controller->view(world, options.size.aspect());
+  const Result<spec::View> first_view = stage->view(options.size.aspect());
   if (!first_view) return failAgain(first_view.error());
   world.look(*first_view);
   gpu::Counters loading;
@@ -275,7 +254,7 @@ Result<void> runHeadless(const Options& options) {
   if (!frame) return failAgain(frame.error());
   const auto render = [&]() -> Result<void> {
     world.updateTransforms();  // cameras may be attached to what moves
-    const Result<spec::View> view = controller->view(world, options.size.aspect());
+    const Result<spec::View> view = stage->view(options.size.aspect());
     if (!view) return failAgain(view.error());
     return frame->render(world, stage->environment(), *view);
   };
@@ -292,8 +271,8 @@ Result<void> runHeadless(const Options& options) {
   for (std::uint32_t i = 0; i < options.frames; ++i) {
     // Over several frames the light turns to its place and time runs to the requested value, so that the cost
     // of movement can be measured.
-    stage->turnLight(options.rotate_light_deg * static_cast<float>(i + 1) /
-                     static_cast<float>(options.frames));
+    stage->environment().setTurn(options.rotate_light_deg * static_cast<float>(i + 1) /
+                                 static_cast<float>(options.frames));
     if (options.time_s)
       world.setAnimationTime(
           std::max(0.0f, *options.time_s - options.step_s * static_cast<float>(options.frames - 1 - i)));
@@ -303,28 +282,13 @@ Result<void> runHeadless(const Options& options) {
     glFinish();
     report.frame_ms.push_back(millisecondsSince(frame_start));
     report.processor_ms.push_back(processorMilliseconds() - processor_start);
-    if (i == 0) {
-      frame->timers().finish();
-      report.first_frame = {frame->timers().latest(), frame->counts()};
-    }
-    if (i + 1 == options.frames) {
-      frame->timers().finish();
-      report.last_frame = {frame->timers().latest(), frame->counts()};
-    }
+    if (i == 0) report.first_frame = frameJson(*frame);
+    if (i + 1 == options.frames) report.last_frame = frameJson(*frame);
     if (every_frame || i + 1 == options.frames)
       if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
   if (!options.json) return {};
-  report.streaming = world.streaming();
-  report.bytes_resident =
-      report.streaming.resident_bytes + frame->kept<effects::volume::Volume>().textureBytes();
-  report.negative_pixels = frame->negativePixels();
-  report.exposure_ev = frame->exposureEv();
-  report.gl_errors = context->errors();
-  const std::span<const spec::Disc> keys = stage->environment().keys();
-  report.keys.assign(keys.begin(), keys.end());
-  report.key_shadow_bytes = frame->kept<frame::KeyShadows>().bytesResident();
-  fmt::print("{}\n", reportJson(options, context->info(), report));
+  fmt::print("{}\n", reportJson(options, *context, *stage, *frame, report));
   return {};
 }
 

@@ -6,7 +6,6 @@
 
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
-#include "runtime/demo/options.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/gpu/objects.hpp"
 

@@ -1,5 +1,3 @@
-#include "runtime/demo/options.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <system_error>
@@ -9,6 +7,7 @@
 
 #include "runtime/base/lower_case.hpp"
 #include "runtime/command_line/help.hpp"
+#include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
@@ -95,14 +94,13 @@ void declare(CLI::App& app, Options& options, Words& words) {
           [&](const std::string& word) { return takePicture(word, options); });
   addWord(
       app, "--view", "NAME",
-      "What surfaces show: final, irradiance, transfer-dc, transfer-band[:BAND], error, clusters, normals "
+      "What surfaces show: final, irradiance, transfer-dc, error, clusters, normals "
       "or wireframe; an .exr holds the numbers",
       into(options.view, named("--view", frame::parseView)))
       ->default_str("final");
-  addWord(
-      app, "--overlay", "LIST",
-      "Drawn over the picture: light-probes, neighborhoods[:AXIS,POSITION], volumes, groups, lights, keys",
-      into(options.overlays, named("--overlay", frame::parseOverlays)));
+  addWord(app, "--overlay", "LIST",
+          "Drawn over the picture: light-probes, neighborhoods, volumes, groups, lights, keys",
+          into(options.overlays, named("--overlay", frame::parseOverlays)));
   addWord(app, "--rotate-light", "DEG", "Turn all lights about +Y (+Z towards +X)",
           into(options.rotate_light_deg, spec::parseDegrees))
       ->default_str("0");
@@ -167,7 +165,7 @@ void describe(CLI::App& app) {
         "draws a turn of the light without a display"}},
       "In the window: drag turns the camera, the wheel moves it, R resets it; the right button drags the "
       "first light that stands in the scene; space stops lights and animations, A and D turn the lights; H "
-      "shows the keys; Esc quits.");
+      "prints the keys; Esc quits.");
   command_line::finish(app, "lambent-demo " LAMBENT_VERSION);
 }
 

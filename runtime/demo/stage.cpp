@@ -28,16 +28,6 @@ std::optional<std::uint32_t> firstCameraNode(const bundle::Description& descript
   return {};
 }
 
-// An empty scene is framed like a unit box.
-scene::Box boundsOf(const frame::World& world) {
-  scene::Box bounds = scene::worldBounds(world.registry());
-  if (bounds.empty()) {
-    bounds.add(glm::vec3(-0.5f));
-    bounds.add(glm::vec3(0.5f));
-  }
-  return bounds;
-}
-
 // Returns the side on which a scene is open, as a horizontal vector: the sum of area times normal over its
 // surfaces. It is 0 for closed bodies and points out of a stage or a room without a front wall.
 glm::vec3 openSide(const frame::World& world) {
@@ -54,84 +44,7 @@ glm::vec3 openSide(const frame::World& world) {
   return {sum.x, 0.0f, sum.z};
 }
 
-spec::OrbitCamera framingOrbit(const frame::World& world, float aspect) {
-  const scene::Box bounds = boundsOf(world);
-  return spec::framingOrbit(bounds.min, bounds.max, openSide(world), aspect);
-}
-
-glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint32_t node) {
-  const auto* place = world.registry().tryGet<scene::WorldTransform>(world.instance(bundle).nodes[node]);
-  return place ? place->world_from_node : glm::mat4(1.0f);
-}
-
 }  // namespace
-
-Result<ViewController> ViewController::create(const frame::World& world,
-                                              const std::optional<spec::Camera>& camera, float aspect) {
-  ViewController controller;
-  controller.bounds_ = boundsOf(world);
-  controller.orbit_ = framingOrbit(world, aspect);
-  if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
-    controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
-  } else {
-    std::optional<Error> error;
-    for (std::uint32_t bundle = 0; bundle < world.bundleCount() && !controller.file_camera_; ++bundle) {
-      if (!world.isOpen(bundle)) continue;
-      const bundle::Description& description = world.description(bundle);
-      if (!camera) {
-        if (const auto node = firstCameraNode(description)) controller.file_camera_ = {bundle, *node};
-        continue;
-      }
-      const Result<std::uint32_t> node =
-          spec::findCameraNode(description.nodes, description.cameras, std::get<spec::NamedCamera>(*camera));
-      if (node)
-        controller.file_camera_ = {bundle, *node};
-      else if (!error)
-        error = node.error();
-    }
-    if (camera && !controller.file_camera_ && error) return failAgain(*error);
-  }
-  controller.first_file_camera_ = controller.file_camera_;
-  controller.first_orbit_ = controller.orbit_;
-  return controller;
-}
-
-Result<spec::View> ViewController::view(const frame::World& world, float aspect) const {
-  if (!file_camera_) return spec::orbitView(orbit_, bounds_.min, bounds_.max, aspect);
-  const bundle::Description& description = world.description(file_camera_->bundle);
-  const auto camera = static_cast<std::size_t>(description.nodes[file_camera_->node].camera);
-  return spec::cameraView(description.cameras[camera],
-                          worldFromNode(world, file_camera_->bundle, file_camera_->node), bounds_.min,
-                          bounds_.max, aspect);
-}
-
-void ViewController::move(const frame::World& world, const gpu::Input& input,
-                          std::optional<float> surface_m) {
-  if (input.reset) {
-    file_camera_ = first_file_camera_;
-    orbit_ = first_orbit_;
-  }
-  if (input.drag_x == 0.0f && input.drag_y == 0.0f && input.scroll == 0.0f) return;
-  if (file_camera_) {
-    const bundle::Description& description = world.description(file_camera_->bundle);
-    const gltf::Camera& camera =
-        description.cameras[static_cast<std::size_t>(description.nodes[file_camera_->node].camera)];
-    const glm::vec3 offset =
-        glm::vec3(worldFromNode(world, file_camera_->bundle, file_camera_->node)[3]) - bounds_.center();
-    const float distance = std::max(glm::length(offset), 1e-6f);
-    orbit_.azimuth_deg = glm::degrees(std::atan2(offset.x, offset.z));
-    orbit_.elevation_deg = glm::degrees(std::asin(std::clamp(offset.y / distance, -1.0f, 1.0f)));
-    orbit_.distance_radii = distance / std::max(bounds_.radius(), 1e-6f);
-    if (camera.perspective) orbit_.fov_deg = glm::degrees(camera.yfov_rad);
-    file_camera_.reset();
-  }
-  orbit_.azimuth_deg = std::remainder(orbit_.azimuth_deg - kDegreesPerWindow * input.drag_x, 360.0f);
-  orbit_.elevation_deg = std::clamp(orbit_.elevation_deg + kDegreesPerWindow * input.drag_y,
-                                    -kMaxElevationDeg, kMaxElevationDeg);
-  const float radius = std::max(bounds_.radius(), 1e-6f);
-  if (surface_m) *surface_m /= radius;
-  orbit_.distance_radii = zoomed(orbit_.distance_radii, input.scroll, surface_m);
-}
 
 Result<lighting::Environment> loadEnvironment(const Options& options) {
   Result<lighting::Environment> environment =
@@ -155,24 +68,83 @@ Result<Stage> Stage::create(const Options& options, lighting::Environment enviro
   for (const std::filesystem::path& path : options.bundles)
     if (const auto opened = stage.world_.open(path); !opened) return failAgain(opened.error());
   stage.world_.scaleLamps(options.lamps);
-  ecs::Registry& registry = stage.world_.registry();
-  scene::addLights(registry, options.lights, stage.world_.origin());
-  stage.environment_entity_ = scene::addEnvironment(registry);
-  auto& component = registry.edit<scene::EnvironmentComponent>(stage.environment_entity_);
-  component.rotation_deg = options.rotate_light_deg;
-  component.fade = options.fade;
-  stage.applyEnvironment();
+  scene::addLights(stage.world_.registry(), options.lights, stage.world_.origin());
+  stage.environment_.setTurn(options.rotate_light_deg);
+  stage.environment_.setFade(options.fade);
+  if (const Result<void> chosen = stage.chooseView(options.camera, options.size.aspect()); !chosen)
+    return failAgain(chosen.error());
   return stage;
 }
 
-void Stage::turnLight(float degrees) {
-  world_.registry().edit<scene::EnvironmentComponent>(environment_entity_).rotation_deg = degrees;
-  applyEnvironment();
+Result<void> Stage::chooseView(const std::optional<spec::Camera>& camera, float aspect) {
+  bounds_ = scene::worldBounds(world_.registry());
+  if (bounds_.empty()) {  // an empty scene is framed like a unit box
+    bounds_.add(glm::vec3(-0.5f));
+    bounds_.add(glm::vec3(0.5f));
+  }
+  orbit_ = spec::framingOrbit(bounds_.min, bounds_.max, openSide(world_), aspect);
+  if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
+    orbit_ = std::get<spec::OrbitCamera>(*camera);
+  } else {
+    std::optional<Error> error;
+    for (std::uint32_t bundle = 0; bundle < world_.bundleCount() && !file_camera_; ++bundle) {
+      if (!world_.isOpen(bundle)) continue;
+      const bundle::Description& description = world_.description(bundle);
+      if (!camera) {
+        if (const auto node = firstCameraNode(description)) file_camera_ = {bundle, *node};
+        continue;
+      }
+      const Result<std::uint32_t> node =
+          spec::findCameraNode(description.nodes, description.cameras, std::get<spec::NamedCamera>(*camera));
+      if (node)
+        file_camera_ = {bundle, *node};
+      else if (!error)
+        error = node.error();
+    }
+    if (camera && !file_camera_ && error) return failAgain(*error);
+  }
+  first_file_camera_ = file_camera_;
+  first_orbit_ = orbit_;
+  return {};
 }
 
-void Stage::applyEnvironment() {
-  const auto* component = world_.registry().tryGet<scene::EnvironmentComponent>(environment_entity_);
-  if (component) environment_.follow(*component);
+const gltf::Camera& Stage::fileCamera() const {
+  const bundle::Description& description = world_.description(file_camera_->bundle);
+  return description.cameras[static_cast<std::size_t>(description.nodes[file_camera_->node].camera)];
+}
+
+glm::mat4 Stage::worldFromCamera() const {
+  const ecs::Entity node = world_.instance(file_camera_->bundle).nodes[file_camera_->node];
+  const auto* place = world_.registry().tryGet<scene::WorldTransform>(node);
+  return place ? place->world_from_node : glm::mat4(1.0f);
+}
+
+Result<spec::View> Stage::view(float aspect) const {
+  if (!file_camera_) return spec::orbitView(orbit_, bounds_.min, bounds_.max, aspect);
+  return spec::cameraView(fileCamera(), worldFromCamera(), bounds_.min, bounds_.max, aspect);
+}
+
+void Stage::move(const gpu::Input& input, std::optional<float> surface_m) {
+  if (input.reset) {
+    file_camera_ = first_file_camera_;
+    orbit_ = first_orbit_;
+  }
+  if (input.drag_x == 0.0f && input.drag_y == 0.0f && input.scroll == 0.0f) return;
+  const float radius = std::max(bounds_.radius(), 1e-6f);
+  if (file_camera_) {
+    const glm::vec3 offset = glm::vec3(worldFromCamera()[3]) - bounds_.center();
+    const float distance = std::max(glm::length(offset), 1e-6f);
+    orbit_.azimuth_deg = glm::degrees(std::atan2(offset.x, offset.z));
+    orbit_.elevation_deg = glm::degrees(std::asin(std::clamp(offset.y / distance, -1.0f, 1.0f)));
+    orbit_.distance_radii = distance / radius;
+    if (fileCamera().perspective) orbit_.fov_deg = glm::degrees(fileCamera().yfov_rad);
+    file_camera_.reset();
+  }
+  orbit_.azimuth_deg = std::remainder(orbit_.azimuth_deg - kDegreesPerWindow * input.drag_x, 360.0f);
+  orbit_.elevation_deg = std::clamp(orbit_.elevation_deg + kDegreesPerWindow * input.drag_y,
+                                    -kMaxElevationDeg, kMaxElevationDeg);
+  if (surface_m) *surface_m /= radius;
+  orbit_.distance_radii = zoomed(orbit_.distance_radii, input.scroll, surface_m);
 }
 
 void Stage::dragLight(const spec::View& view, float right, float down) {

@@ -5,13 +5,12 @@
 #include <set>
 #include <string_view>
 
-#include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/gpu/window.hpp"
+#include "runtime/gpu/context.hpp"
 
 namespace lambent::demo {
 
@@ -25,24 +24,6 @@ constexpr float kKeyDegreesPerSecond = 60.0f;   // while A or D is held
 float secondsSince(Clock::time_point start) {
   return std::chrono::duration<float>(Clock::now() - start).count();
 }
-
-// Shows frames per second, over about the last second, in the window's title.
-class TitleClock {
- public:
-  void tick(gpu::Window& window, const std::string& title) {
-    ++frames_;
-    const float seconds = secondsSince(start_);
-    if (seconds < 1.0f) return;
-    const float fps = static_cast<float>(frames_) / seconds;
-    window.setTitle(fmt::format("{} - {:.0f} frames/s", title, fps));
-    start_ = Clock::now();
-    frames_ = 0;
-  }
-
- private:
-  Clock::time_point start_ = Clock::now();
-  int frames_ = 0;
-};
 
 // Adds what is being loaded and how much of the memory is taken.
 std::string titleOf(const std::string& title, const frame::StreamingStatus& status) {
@@ -62,7 +43,6 @@ constexpr std::string_view kKeys =
     "R             first view again\n"
     "A, D          turn the lights\n"
     "space         stop lights and animations\n"
-    "H             hide these keys\n"
     "Esc           quit";
 
 // Returns the distance to the surface in the middle of the picture, or none where the sky is.
@@ -85,8 +65,6 @@ Result<void> runWindowed(const Options& options) {
   Result<Stage> stage = Stage::create(options, std::move(*environment));
   if (!stage) return failAgain(stage.error());
   frame::World& world = stage->world();
-  Result<ViewController> controller = ViewController::create(world, options.camera, options.size.aspect());
-  if (!controller) return failAgain(controller.error());
   spec::Size size = options.size;
   window->framebufferSize(size.width, size.height);
   Result<frame::Frame> frame = frame::Frame::create({.size = size,
@@ -99,10 +77,11 @@ Result<void> runWindowed(const Options& options) {
   if (!frame) return failAgain(frame.error());
 
   float turn_deg = options.rotate_light_deg;
-  bool turning = true, shows_keys = false;
+  bool turning = true;
   std::optional<spec::View> last_view;
   world.setAnimationTime(options.time_s.value_or(0.0f));
-  TitleClock title_clock;
+  Clock::time_point titled = Clock::now();
+  int frames = 0;                  // since the title was set, about once per second
   std::set<std::string> reported;  // errors of bundles, each reported once
   Clock::time_point last = Clock::now();
   while (true) {
@@ -116,30 +95,31 @@ Result<void> runWindowed(const Options& options) {
     else if (turning)
       turn_deg += kTurnDegreesPerSecond * seconds;
     turn_deg = std::remainder(turn_deg, 360.0f);
-    stage->turnLight(turn_deg);
+    stage->environment().setTurn(turn_deg);
     if (turning) world.playAnimations(seconds);
-    if (input.help) shows_keys = !shows_keys;
+    if (input.help) fmt::print("{}\n", kKeys);
     // Only the wheel asks what is ahead, since the answer waits for the GPU.
-    controller->move(
-        world, input,
-        input.scroll > 0.0f && last_view ? surfaceAhead(*frame, world, *last_view, size) : std::nullopt);
+    stage->move(input, input.scroll > 0.0f && last_view ? surfaceAhead(*frame, world, *last_view, size)
+                                                        : std::nullopt);
 
     window->framebufferSize(size.width, size.height);
     frame->resize(size);
     world.updateTransforms();
-    const Result<spec::View> view = controller->view(world, size.aspect());
+    const Result<spec::View> view = stage->view(size.aspect());
     if (!view) return failAgain(view.error());
     if (input.light_x != 0.0f || input.light_y != 0.0f) stage->dragLight(*view, input.light_x, input.light_y);
     if (Result<void> rendered = frame->render(world, stage->environment(), *view); !rendered) return rendered;
     last_view = *view;
-    if (shows_keys) {
-      glBindFramebuffer(GL_FRAMEBUFFER, 0);
-      gpu::drawPlainText(kKeys, size.height);
-    }
     window->swap();
     for (const frame::BundleError& wrong : world.errors())
       if (reported.insert(wrong.error.line()).second) printError(wrong.error);
-    title_clock.tick(*window, titleOf(title, world.streaming()));
+    ++frames;
+    if (const float since = secondsSince(titled); since >= 1.0f) {
+      window->setTitle(fmt::format("{} - {:.0f} frames/s", titleOf(title, world.streaming()),
+                                   static_cast<float>(frames) / since));
+      titled = Clock::now();
+      frames = 0;
+    }
   }
 }
 

@@ -155,7 +155,6 @@ void TextureUnits::bindGlossy(const World& world, const SurfaceTextures& texture
   bindOne(kUnitSpecularColor, owner, textures.specular_color);
   bindOne(kUnitAnisotropy, owner, textures.anisotropy);
   owner->brdf_tables[static_cast<std::size_t>(table)].texture.bind(kUnitBrdf);
-  glBindSampler(kUnitBrdf, 0);  // the texture's own sampling is used
 }
 
 void TextureUnits::unbindSamplers() const {
@@ -211,13 +210,11 @@ BrdfChoice choiceOf(const World& world, std::size_t draw) {
                       world.bakedMaterial(draw));
 }
 
-// Returns whether the table that a draw looks up is resident.
-bool tableReady(const World& world, std::size_t draw) {
+// Returns the table that a draw looks up, or null if no table fits.
+const streaming::BrdfTexture* tableOf(const World& world, std::size_t draw) {
   const std::int32_t table = brdfTableOf(world, draw);
-  return table >= 0 && world.residency()
-                           .bundles()[world.residency().draws()[draw].bundle]
-                           .brdf_tables[static_cast<std::size_t>(table)]
-                           .texture;
+  const auto& tables = world.residency().bundles()[world.residency().draws()[draw].bundle].brdf_tables;
+  return table >= 0 ? &tables[static_cast<std::size_t>(table)] : nullptr;
 }
 
 }  // namespace
@@ -234,26 +231,24 @@ std::int32_t brdfTableOf(const World& world, std::size_t draw) {
 
 bool glossyReady(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
-  const streaming::ResidentBundle& owner = world.residency().bundles()[resident.bundle];
-  const std::int32_t table = brdfTableOf(world, draw);
-  return resident.glossy() && table >= 0 && owner.brdf_tables[static_cast<std::size_t>(table)].texture &&
-         owner.brdf_tables[static_cast<std::size_t>(table)].order == transfer::bandsOf(resident.outputs) &&
+  const streaming::BrdfTexture* table = tableOf(world, draw);
+  return resident.glossy() && table != nullptr && table->texture &&
+         table->order == transfer::bandsOf(resident.outputs) &&
          world.residency().meshes()[resident.mesh].block && resident.rows &&
          world.residency().groups()[resident.group].samples;
 }
 
 bool layerReady(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
-  return resident.layered && resident.radiance && tableReady(world, draw);
+  const streaming::BrdfTexture* table = tableOf(world, draw);
+  return resident.layered && resident.radiance && table != nullptr && table->texture;
 }
 
 GlossyPart describeGlossy(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
   const streaming::ResidentGroup& group = world.residency().groups()[resident.group];
-  const streaming::BrdfTexture& table = world.residency()
-                                            .bundles()[resident.bundle]
-                                            .brdf_tables[static_cast<std::size_t>(brdfTableOf(world, draw))];
+  const streaming::BrdfTexture& table = *tableOf(world, draw);
   const gltf::Material& material = world.material(draw);
   // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
   const glm::vec3 dielectric = material.reflectance() * material.specular_color;
@@ -287,10 +282,7 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
 }
 
 GlossyKind layerKindOf(const World& world, std::size_t draw) {
-  const streaming::ResidentBundle& owner =
-      world.residency().bundles()[world.residency().draws()[draw].bundle];
-  const BrdfChoice choice = choiceOf(world, draw);
-  return {.bands = owner.brdf_tables[static_cast<std::size_t>(choice.table)].order, .family = choice.family};
+  return {.bands = tableOf(world, draw)->order, .family = choiceOf(world, draw).family};
 }
 
 GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_bands) {

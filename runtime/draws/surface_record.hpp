@@ -29,7 +29,7 @@ namespace lambent::frame {
 // The uniform block of the camera, as surface.vert and the shaders that draw over its picture read it.
 struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 eye;  // see glossy_receiver.glsl
+  glm::vec4 eye;  // see view_block.glsl
 };
 
 // Returns whether all of the box lies on the far side of one plane of the frustum. A box that surrounds a

@@ -32,7 +32,6 @@ Entity Registry::create() {
     index = free_.back();
     free_.pop_back();
   }
-  ++alive_count_;
   return Entity{index, ++generations_[index]};
 }
 
@@ -43,7 +42,6 @@ bool Registry::destroy(Entity entity) {
   const bool used_up = entity.generation == std::numeric_limits<std::uint32_t>::max();
   ++generations_[entity.index];
   if (!used_up) free_.push_back(entity.index);
-  --alive_count_;
   return true;
 }
 
@@ -54,19 +52,18 @@ bool Registry::alive(Entity entity) const {
 
 std::vector<Entity> Registry::entities() const {
   std::vector<Entity> all;
-  all.reserve(alive_count_);
   for (std::uint32_t index = 0; index < generations_.size(); ++index) {
     if (generations_[index] % 2 == 1) all.push_back(Entity{index, generations_[index]});
   }
   return all;
 }
 
-SparseSetBase* Registry::findSet(detail::TypeId type) const {
+SparseSetBase* Registry::findSet(const void* type) const {
   const auto it = sets_.find(type);
   return it == sets_.end() ? nullptr : it->second.get();
 }
 
-void Registry::addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set) {
+void Registry::addSet(const void* type, std::unique_ptr<SparseSetBase> set) {
   sets_.emplace(type, std::move(set));
 }
 

@@ -206,28 +206,16 @@ class View {
   std::vector<Entity> entities_;
 };
 
-namespace detail {
 // A type is identified by the address of its own constant, so there is no counter and no name can collide.
 template <class T>
 inline constexpr char kTypeTag = 0;
-using TypeId = const void*;
-template <class T>
-constexpr TypeId typeId() {
-  return &kTypeTag<T>;
-}
-}  // namespace detail
 
 class Registry {
  public:
-  Registry() = default;
-  Registry(Registry&&) noexcept = default;
-  Registry& operator=(Registry&&) noexcept = default;
-
   Entity create();
   // Destroys the entity and its components. Does nothing and returns false if it is not alive.
   bool destroy(Entity entity);
   bool alive(Entity entity) const;
-  std::size_t entityCount() const { return alive_count_; }
   // Returns all living entities, sorted by index.
   std::vector<Entity> entities() const;
 
@@ -317,7 +305,7 @@ class Registry {
   // Returns the only T of this registry, which is default-constructed on first use.
   template <class T>
   T& state() {
-    std::shared_ptr<void>& slot = states_[detail::typeId<T>()];
+    std::shared_ptr<void>& slot = states_[&kTypeTag<T>];
     if (!slot) slot = std::make_shared<T>();
     return *static_cast<T*>(slot.get());
   }
@@ -325,29 +313,28 @@ class Registry {
  private:
   template <class T>
   SparseSet<T>* find() {
-    return static_cast<SparseSet<T>*>(findSet(detail::typeId<T>()));
+    return static_cast<SparseSet<T>*>(findSet(&kTypeTag<T>));
   }
   template <class T>
   const SparseSet<T>* find() const {
-    return static_cast<const SparseSet<T>*>(findSet(detail::typeId<T>()));
+    return static_cast<const SparseSet<T>*>(findSet(&kTypeTag<T>));
   }
   template <class T>
   SparseSet<T>& setOf() {
     if (SparseSet<T>* set = find<T>()) return *set;
     auto made = std::make_unique<SparseSet<T>>();
     SparseSet<T>& set = *made;
-    addSet(detail::typeId<T>(), std::move(made));
+    addSet(&kTypeTag<T>, std::move(made));
     return set;
   }
   // These are not in the header, so that the map's code is not compiled once per component type.
-  SparseSetBase* findSet(detail::TypeId type) const;
-  void addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set);
+  SparseSetBase* findSet(const void* type) const;
+  void addSet(const void* type, std::unique_ptr<SparseSetBase> set);
 
   std::vector<std::uint32_t> generations_;  // one per index; odd if alive
   std::vector<std::uint32_t> free_;         // indices to reuse; the last one is used first
-  std::size_t alive_count_ = 0;
-  std::unordered_map<detail::TypeId, std::unique_ptr<SparseSetBase>> sets_;
-  std::unordered_map<detail::TypeId, std::shared_ptr<void>> states_;
+  std::unordered_map<const void*, std::unique_ptr<SparseSetBase>> sets_;
+  std::unordered_map<const void*, std::shared_ptr<void>> states_;
 };
 
 }  // namespace lambent::ecs

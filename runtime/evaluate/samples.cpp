@@ -18,20 +18,6 @@ const gpu::FindText kEvaluateShaders[2] = {&embedded::lambent_evaluate::find,
 static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
               transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
-Result<void> Kernels::use(std::initializer_list<gpu::Stage> stages, std::vector<gpu::Define> defines) {
-  std::string label;
-  for (const gpu::Stage& stage : stages) label += fmt::format("{}{}", label.empty() ? "" : " ", stage.file);
-  for (const gpu::Define& define : defines) label += fmt::format(" {} {}", define.name, define.value);
-  auto found = programs_.find(label);
-  if (found == programs_.end()) {
-    Result<gpu::Program> made = gpu::Program::create(label, stages, texts_, defines);
-    if (!made) return failAgain(made.error());
-    found = programs_.emplace(label, std::move(*made)).first;
-  }
-  found->second.use();
-  return {};
-}
-
 namespace {
 
 bool takesFull(const transfer::TransferShape& shape, TransferMode mode) {
@@ -103,7 +89,7 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
     }
     record.first_plane = static_cast<std::uint32_t>(places.size());
     for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)
-      places.push_back(transfer.planes[j].word |
+      places.push_back(transfer.planes[j].block.word() |
                        (transfer.planes[j].bits == 16 ? transfer::kCodes16Bit : 0u));
     record.first_product = product_count;
     product_count += record.light_count * record.light_products;

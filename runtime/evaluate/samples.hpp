@@ -11,17 +11,44 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/evaluate/kernels.hpp"
+#include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 #include "runtime/transfer/transfer_shared.h"
 
 namespace lambent::evaluate {
+
+// The tables of GLSL text that kernels of this room include files from.
+extern const gpu::FindText kEvaluateShaders[2];
+
+// Returns the order that is compiled into kernels; 0 selects a kernel that loops over any order.
+constexpr std::uint32_t compiledOrder(std::uint32_t order) {
+  return order >= 2 && order <= 6 ? order : 0;
+}
+
+// Runs all batches of the list, and makes what they wrote visible to what `barriers` names. For each batch
+// `prepare` gets its key, and binds its program and its buffers but for the work itself.
+template <class Prepare>
+Result<void> run(gpu::WorkList& work, gpu::Counters& counters, const Prepare& prepare,
+                 GLbitfield barriers = GL_SHADER_STORAGE_BARRIER_BIT) {
+  if (work.empty()) return {};
+  work.upload(counters);
+  std::size_t index = 0;
+  for (const auto& [key, items] : work.batches()) {
+    if (Result<void> done = prepare(key); !done) return done;
+    work.dispatch(index++, transfer::kBindWork, counters);
+  }
+  glMemoryBarrier(barriers);
+  return {};
+}
 
 // Selects the block of the transfer that counts: none, light without bounces, or all light where it was
 // baked. In mode Unshadowed the groups' own lights are dark, because without transfer it is unknown where
@@ -104,7 +131,7 @@ class Samples {
   Result<void> runWork(Work& work, streaming::Residency& residency, gpu::Counters& counters);
   Result<void> project(gpu::WorkList& work, streaming::Residency& residency, gpu::Counters& counters);
 
-  Kernels kernels_;
+  gpu::Programs kernels_;
   std::map<std::array<std::uint32_t, 2>, gpu::Table> gaunts_;  // keyed by bands in and out
   TransferTable tables_;
   std::vector<transfer::FillRecord> fills_;

@@ -1,6 +1,6 @@
 // The kernels of seen_sky.hpp: LAMBENT_SAMPLES decodes samples, the other one gathers them at vertices.
 #include "transfer_shared.h"
-#include "seen_sky_kernels.h"
+#include "seen_sky_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };

@@ -173,18 +173,18 @@ std::uint32_t wordsOf(std::uint32_t outputs) {
 }
 
 // Returns the record of a draw whose group's samples begin at word 0.
-SeenDraw recordOf(const streaming::ResidentDraw& draw, const streaming::ResidentGroup& group,
-                  const streaming::ResidentMesh& mesh) {
+transfer::SeenDraw recordOf(const streaming::ResidentDraw& draw, const streaming::ResidentGroup& group,
+                            const streaming::ResidentMesh& mesh) {
   const streaming::SampleStretch stretch = group.stretchOf(draw.form());
-  SeenDraw record{.group_from_mesh_normal = {},
-                  .vertex_count = mesh.vertex_count,
-                  .normals_word = mesh.normals_word,
-                  .rows_word = draw.rows.word(),
-                  .row_entries = draw.row_entries,
-                  .first_sample = stretch.first_sample,
-                  .samples_word = wordsOf(1) * stretch.first_sample,
-                  .seen_word = draw.seenWord(mesh),
-                  .pad = 0};
+  transfer::SeenDraw record{.group_from_mesh_normal = {},
+                            .vertex_count = mesh.vertex_count,
+                            .normals_word = mesh.normals_word,
+                            .rows_word = draw.rows.word(),
+                            .row_entries = draw.row_entries,
+                            .first_sample = stretch.first_sample,
+                            .samples_word = wordsOf(1) * stretch.first_sample,
+                            .seen_word = draw.seenWord(mesh),
+                            .pad = 0};
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
       record.group_from_mesh_normal[4 * column + row] = draw.group_from_mesh_normal[column][row];
@@ -197,8 +197,8 @@ SeenDraw recordOf(const streaming::ResidentDraw& draw, const streaming::Resident
 // with one output, then the normal-mapped ones.
 struct SeenSky::Tables {
   TransferTable transfers;
-  std::vector<SeenCell> cells;
-  std::vector<SeenDraw> draws;
+  std::vector<transfer::SeenCell> cells;
+  std::vector<transfer::SeenDraw> draws;
   std::uint64_t words = 0;  // of all samples
 };
 
@@ -222,13 +222,13 @@ Result<void> SeenSky::update(streaming::Residency& residency, const lighting::Gr
   if (!collect(residency)) return {};
   if (!kernel_) kernel_ = kernelTexture();
   const Tables tables = describe(residency, lights);
-  cells_.assign(std::span<const SeenCell>(tables.cells));
+  cells_.assign(std::span<const transfer::SeenCell>(tables.cells));
   transfers_.assign(std::span<const transfer::TransferRecord>(tables.transfers.transfers));
   places_.assign(std::span<const std::uint32_t>(tables.transfers.places));
-  draws_.assign(std::span<const SeenDraw>(tables.draws));
+  draws_.assign(std::span<const transfer::SeenDraw>(tables.draws));
   const gpu::Buffer samples("seen sky samples", 4 * tables.words, gpu::WrittenBy::Gpu);
   glClearNamedBufferData(samples.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  samples.bindStorage(kBindSeenSamples);
+  samples.bindStorage(transfer::kBindSeenSamples);
   ++version_;
   return run(residency, counters);
 }
@@ -274,7 +274,7 @@ SeenSky::Tables SeenSky::describe(const streaming::Residency& residency,
     const streaming::ResidentDraw& draw = residency.draws()[i];
     const streaming::ResidentGroup& group = residency.groups()[draw.group];
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    SeenDraw record = recordOf(draw, group, mesh);
+    transfer::SeenDraw record = recordOf(draw, group, mesh);
     record.samples_word += word_of[draw.group];
     vertices_work_.add({draw.outputs, draw.rows.page, mesh.block.page, draw.radiance.page},
                        static_cast<std::uint32_t>(tables.draws.size()), mesh.vertex_count,
@@ -285,7 +285,7 @@ SeenSky::Tables SeenSky::describe(const streaming::Residency& residency,
 }
 
 Result<void> SeenSky::run(streaming::Residency& residency, gpu::Counters& counters) {
-  cells_.bindStorage(kBindSeenCells);
+  cells_.bindStorage(transfer::kBindSeenCells);
   transfers_.bindStorage(transfer::kBindTransfers);
   places_.bindStorage(transfer::kBindPlaces);
   Result<void> done = evaluate::run(samples_work_, counters, [&](const gpu::BatchKey& key) {
@@ -294,11 +294,11 @@ Result<void> SeenSky::run(streaming::Residency& residency, gpu::Counters& counte
                         {{"LAMBENT_SAMPLES", "1"}, {"LAMBENT_OUTPUTS", std::to_string(key[0])}});
   });
   if (!done) return done;
-  draws_.bindStorage(kBindSeenDraws);
+  draws_.bindStorage(transfer::kBindSeenDraws);
   return evaluate::run(vertices_work_, counters, [&](const gpu::BatchKey& key) {
-    residency.rows().page(key[1]).bindStorage(kBindSeenRows);
-    residency.geometry().page(key[2]).bindStorage(kBindSeenGeometry);
-    residency.radiance().page(key[3]).bindStorage(kBindSeenVertices);
+    residency.rows().page(key[1]).bindStorage(transfer::kBindSeenRows);
+    residency.geometry().page(key[2]).bindStorage(transfer::kBindSeenGeometry);
+    residency.radiance().page(key[3]).bindStorage(transfer::kBindSeenVertices);
     return kernels_.use("seen_sky.comp", {{"LAMBENT_OUTPUTS", std::to_string(key[0])}});
   });
 }

@@ -15,7 +15,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/evaluate/samples.hpp"
-#include "runtime/evaluate/seen_sky_kernels.h"
 #include "runtime/gpu/program.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
@@ -60,7 +59,7 @@ class SeenSky {
   Tables describe(const streaming::Residency& residency, const lighting::GroupLights& lights);
   Result<void> run(streaming::Residency& residency, gpu::Counters& counters);
 
-  Kernels kernels_{kEvaluateShaders};
+  gpu::Programs kernels_{kEvaluateShaders};
   gpu::Texture kernel_;  // see SeenKernel
   gpu::Table cells_, transfers_, places_, draws_;
   gpu::WorkList samples_work_, vertices_work_;

@@ -61,10 +61,7 @@ void TransferValues::describe(const streaming::Residency& residency, const light
                        .first_value = first_of_group_[cell.group] + cell.first_sample,
                        .cell = i,
                        .constant = i < of_cells.size() ? of_cells[i] : 0.0f});
-      const bool folded = record.visibility != 0 && question_.value == TransferValue::BandEnergy;
-      (adds ? adding_work_ : work_)
-          .add({folded ? record.order : 0u, cell.block.page}, at, record.sample_count,
-               transfer::kWorkGroupSize);
+      (adds ? adding_work_ : work_).add({cell.block.page}, at, record.sample_count, transfer::kWorkGroupSize);
     }
   }
   cells_.assign(std::span<const ValueCell>(cells));
@@ -80,19 +77,10 @@ Result<void> TransferValues::run(streaming::Residency& residency, gpu::WorkList&
   transfers_.bindStorage(transfer::kBindTransfers);
   places_.bindStorage(transfer::kBindPlaces);
   values_.bindStorage(kBindValues);
-  return evaluate::run(work, counters, [&](const gpu::BatchKey& key) -> Result<void> {
-    std::vector<gpu::Define> defines = {
-        {"LAMBENT_VALUE", std::to_string(static_cast<std::uint32_t>(question_.value))}};
-    if (key[0] > 0) {
-      defines.push_back({"LAMBENT_VISIBILITY", std::to_string(key[0])});
-      gpu::Table& products = products_.try_emplace(key[0], "transfer value products").first->second;
-      if (!products.buffer()) products.assign(std::span<const std::uint32_t>(gauntWords(key[0], 3)));
-      products.bindStorage(kBindProducts3);
-    }
-    residency.transfer().page(key[1]).bindStorage(transfer::kBindTransfer);
-    if (Result<void> used = kernels_.use("transfer_values.comp", std::move(defines)); !used) return used;
-    glUniform1ui(0, question_.band);
-    return {};
+  return evaluate::run(work, counters, [&](const gpu::BatchKey& key) {
+    residency.transfer().page(key[0]).bindStorage(transfer::kBindTransfer);
+    const bool dc = question_.value == TransferValue::Dc;
+    return kernels_.use("transfer_values.comp", {{"LAMBENT_VALUE", dc ? "1" : "0"}});
   });
 }
 

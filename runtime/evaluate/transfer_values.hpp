@@ -1,15 +1,14 @@
-// Computes numbers of the coded transfer at every sample of every surface, for views of it: DC, the energy of
-// a band, a number per cell, and always the cluster. Values that are known without codes can be given. It
-// takes the resident codes of all effects that keep them (diffuse, normal-mapped, glossy), and provides a
-// buffer of SampleValue that a raster pass gathers by the rows of vertices. Nothing is held or dispatched
-// until update() is called; update() does nothing if neither the codes nor the question changed.
+// Computes numbers of the coded transfer at every sample of every surface, for views of it: DC, a number per
+// cell, and always the cluster. Values that are known without codes can be given. It takes the resident codes
+// of all effects that keep them (diffuse, normal-mapped, glossy), and provides a buffer of SampleValue that a
+// raster pass gathers by the rows of vertices. Nothing is held or dispatched until update() is called;
+// update() does nothing if neither the codes nor the question changed.
 // transfer_values.comp defines the numbers. Render thread only. Fails if a kernel does not compile on this
 // device.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -23,11 +22,10 @@
 
 namespace lambent::evaluate {
 
-enum class TransferValue : std::uint8_t { OfCell, Dc, BandEnergy, Given };
+enum class TransferValue : std::uint8_t { OfCell, Dc, Given };
 
 struct TransferQuestion {
   TransferValue value = TransferValue::Dc;
-  std::uint32_t band = 0;                  // for BandEnergy
   TransferMode mode = TransferMode::Full;  // Unshadowed: no sample has a value
   bool operator==(const TransferQuestion&) const = default;
 };
@@ -55,8 +53,7 @@ class TransferValues {
                 std::span<const float> of_cells);
   Result<void> run(streaming::Residency& residency, gpu::WorkList& work, gpu::Counters& counters);
 
-  Kernels kernels_{kEvaluateShaders};
-  std::map<std::uint32_t, gpu::Table> products_;  // keyed by bands
+  gpu::Programs kernels_{kEvaluateShaders};
   gpu::Table cells_, transfers_, places_;
   gpu::WorkList work_, adding_work_;
   gpu::Buffer values_;

@@ -15,7 +15,6 @@ using uint = std::uint32_t;
 
 LAMBENT_CONSTANT kBindValueCells = 1u;  // ValueCell
 LAMBENT_CONSTANT kBindValues = 6u;      // SampleValue
-LAMBENT_CONSTANT kBindProducts3 = 7u;   // product of spherical harmonics: offsets of nine outputs, then its terms
 LAMBENT_CONSTANT kNoCluster = 0xffffffffu;
 
 // Names a transfer of a cell.

@@ -13,10 +13,9 @@
 #include <utility>
 
 #include "runtime/base/result.hpp"
-#include "runtime/debug/picker.hpp"
+#include "runtime/debug/data_view.hpp"
 #include "runtime/frame/frame_pass.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/picture_targets.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
@@ -75,24 +74,20 @@ class Frame {
 
   gpu::PassTimers& timers() { return timers_; }
   const StepCounts& counts() const { return counts_; }
-  // Returns the object that some pass offered, by its type.
-  template <class Type>
-  const Type& kept() const {
-    return board_.get<Type>();
-  }
+  // Returns what the passes keep (frame_parts.hpp).
+  const FrameParts& parts() const { return *parts_; }
   const FrameOptions& options() const { return options_; }
 
  private:
-  Frame(const FrameOptions& options, PassList passes, Blackboard board);
+  Frame(const FrameOptions& options, std::shared_ptr<FrameParts> parts);
 
   FrameContext contextOf(World& world, lighting::Environment& environment, const spec::View* view);
   Result<void> step(FrameContext& context);
-  Result<void> walk(std::span<const std::unique_ptr<FramePass>> passes, FrameContext& context);
+  Result<void> walk(std::span<const FramePass> passes, FrameContext& context);
   bool atRest(const World& world, const lighting::Environment& environment) const;
 
   FrameOptions options_;
-  Blackboard board_;
-  PassList passes_;
+  std::shared_ptr<FrameParts> parts_;  // owned alone; a shared pointer may hold a type that is not complete
   PictureTargets targets_;
   InvalidationLog log_;
   StepCounts counts_;

@@ -1,39 +1,32 @@
-// Defines a pass of the frame: an effect, or a stage that effects need. A pass declares what it reads and
-// writes, says whether it is due, and updates what it keeps. The frame runs a list of passes (PassList),
+// Defines a pass of the frame: an effect, or a stage that effects need. It is a function over what the frame
+// keeps (FrameParts), with a rule when it is due. The frame runs the passes in the order of their lists,
 // times each, and knows nothing else of them. The passes of a step come first; those of a picture have a
 // view.
-//
-// A resource is a type on the blackboard, or World and PictureTargets, which the context provides itself. Of
-// `reads`, a pass sees what earlier passes wrote in this step; of `reads_before`, what the step before left,
-// because light between bodies travels once per step.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <typeindex>
-#include <utility>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
+
 #include "runtime/base/result.hpp"
-#include "runtime/draws/surface_module.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/picture_targets.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/spec/image.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
 
 // Explains why passes run: it says in words what changed since the last step. It compares versions and values
 // of the world, the environment, the settings and the view once per step. For a pass that did something it
-// returns the causes that concern the pass in one line, such as "light turned, 2 groups moved". It only
+// returns the causes that concern the pass in one line, such as "light turned, groups moved". It only
 // reports; no pass runs because of it.
 enum class Cause : std::uint32_t {
   Arrived = 1u << 0,      // parts of bundles arrived
@@ -47,11 +40,14 @@ enum class Cause : std::uint32_t {
   Exposure = 1u << 8,  // only affects the tone mapper
   Asked = 1u << 9      // Frame::forget() was called
 };
-constexpr std::uint32_t operator|(Cause a, Cause b) {
-  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b);
+constexpr std::uint32_t causes(Cause cause) {
+  return static_cast<std::uint32_t>(cause);
 }
 constexpr std::uint32_t operator|(std::uint32_t a, Cause b) {
-  return a | static_cast<std::uint32_t>(b);
+  return a | causes(b);
+}
+constexpr std::uint32_t operator|(Cause a, Cause b) {
+  return causes(a) | b;
 }
 
 // These causes change light on surfaces, whatever the camera.
@@ -92,38 +88,8 @@ class InvalidationLog {
   std::uint64_t transforms_ = 0, groups_ = 0, lamps_ = 0, local_lights_ = 0, materials_ = 0;
 };
 
-// Lists the types that a pass reads or writes.
-using Resources = std::vector<std::type_index>;
-template <class... Types>
-Resources resources() {
-  return {std::type_index(typeid(Types))...};
-}
-
-// Holds what the passes of a frame share, found by its type: lights of groups, shaded samples, shadow maps. A
-// pass offers its own objects once, when it is made, and they live as long as the frame.
-class Blackboard {
- public:
-  // Offers an object. There may be only one of each type.
-  template <class Type>
-  void offer(Type& object) {
-    const bool first = objects_.emplace(typeid(Type), &object).second;
-    assert(first);
-    (void)first;
-  }
-  // Returns the object of a type. Throws std::out_of_range if nobody offered it, which is a mistake in the
-  // list of passes.
-  template <class Type>
-  Type& get() const {
-    return *static_cast<Type*>(objects_.at(typeid(Type)));
-  }
-
- private:
-  std::map<std::type_index, void*> objects_;
-};
-
 // Counts what one step and the picture after it did, as numbers with names, such as light probes captured or
-// cells shaded. Each pass declares its names once, and two passes may share one. For a still scene the work
-// counts are 0. Reports print the whole list.
+// cells shaded. For a still scene the work counts are 0. Reports print the whole list.
 class StepCounts {
  public:
   struct Count {
@@ -131,15 +97,13 @@ class StepCounts {
     std::uint64_t value = 0;
   };
 
-  // add() and operator[] throw std::out_of_range for names that were not declared.
-  void declare(std::span<const std::string_view> names);
+  StepCounts();
   // Sets every count to 0.
   void clear();
+  // These throw std::out_of_range for names that are not in the list (frame.cpp).
   void add(std::string_view name, std::uint64_t value);
-  // Returns the count, or 0 before any is declared.
   std::uint64_t operator[](std::string_view name) const;
 
-  // Iterate in the order in which the names were declared.
   auto begin() const { return counts_.begin(); }
   auto end() const { return counts_.end(); }
 
@@ -149,10 +113,72 @@ class StepCounts {
   std::vector<Count> counts_;
 };
 
-// Describes the frame that a pass runs in: the world, the light, the options, what other passes keep, and
-// where the pass counts and says why it ran. It lives for one step, or one step and a picture.
-struct PassInfo;
+// Returns the number of samples per pixel of the textures that are drawn into; 0 stands for plain textures.
+std::uint32_t samplesOf(Output output);
 
+// Owns the textures that a frame draws into: linear radiance and depth, and the picture that is made from
+// them unless it goes elsewhere. Radiance and depth may be shared with other code. It takes the kind and size
+// of the picture, and provides framebuffers for passes and the picture for reading. Render thread only;
+// reading waits for the GPU.
+class PictureTargets {
+ public:
+  PictureTargets(Output output, Destination destination) : output_(output), destination_(destination) {}
+
+  // Makes the textures anew if their size differs.
+  void resize(const spec::Size& size);
+  const spec::Size& size() const { return size_; }
+  // Draws into these from now on, which share their storage with other code. Both have the same size and
+  // samples.
+  void share(gpu::Texture hdr, gpu::Texture depth);
+  // Rises when the textures are made anew.
+  std::uint64_t version() const { return version_; }
+
+  // Binds radiance and depth. Unless they are shared, radiance is cleared to `grey` with alpha 0, depth to
+  // the far end.
+  void bindCleared(float grey);
+  // Binds the framebuffer of the picture, or the window's.
+  void bindPicture() const;
+
+  const gpu::Texture& hdr() const { return hdr_; }
+  const gpu::Texture& depth() const { return depth_; }
+  // Returns radiance without depth, for passes that read the depth.
+  const gpu::Framebuffer& hdrColor() const { return hdr_color_target_; }
+  // Returns the picture, with row 0 at the bottom; empty if it goes to the window.
+  const gpu::Texture& picture() const { return picture_; }
+
+  // Return the picture, with row 0 at the top. Linear pictures have the depths of what wrote to the depth
+  // buffer; clip_from_view is the projection with which they were drawn.
+  spec::RgbaImage readLinear(const glm::mat4& clip_from_view) const;
+  spec::Rgba8Image readDisplay() const;
+
+ private:
+  Output output_;
+  Destination destination_;
+  spec::Size size_{};
+  std::uint64_t version_ = 0;
+  gpu::Texture hdr_, depth_, picture_;
+  gpu::Framebuffer hdr_target_, hdr_color_target_, picture_target_;
+};
+
+struct FrameContext;
+struct FrameParts;
+
+struct FramePass {
+  std::string_view name;     // in timings
+  std::uint32_t causes = 0;  // causes in the invalidation log that make it run
+  Result<void> (*update)(FrameContext&);
+  // Returns whether the pass has anything to update; null: always. A pass that is not due may release what it
+  // holds.
+  bool (*due)(const FrameContext&) = nullptr;
+};
+
+// List passes in the order in which they run: those of a step, then those of a picture.
+std::span<const FramePass> stepPasses();
+std::span<const FramePass> surfacePasses();
+std::span<const FramePass> picturePasses();
+
+// Describes the frame that a pass runs in: the world, the light, the options, what the frame keeps, and where
+// the pass counts and says why it ran. It lives for one step, or one step and a picture.
 struct FrameContext {
   World& world;
   lighting::Environment& environment;  // only the pass for transforms changes it: its suns of the scene
@@ -161,9 +187,9 @@ struct FrameContext {
   PictureTargets& targets;
   InvalidationLog& log;
   StepCounts& counts;
-  const Blackboard& board;
+  FrameParts& parts;
   // These belong to the pass that is asked or runs.
-  const PassInfo* pass = nullptr;
+  const FramePass* pass = nullptr;
   gpu::PassTimers::Scope* scope = nullptr;
 
   const FrameSettings& settings() const { return options.settings; }
@@ -171,95 +197,11 @@ struct FrameContext {
   std::span<const spec::Disc> keys() const {
     return options.keysApart() ? environment.keys() : std::span<const spec::Disc>();
   }
-  // Return what the pass declares that it reads, or writes.
-  template <class Type>
-  const Type& read() const {
-    assert(declares(typeid(Type), /*to_write=*/false));
-    return board.get<Type>();
-  }
-  template <class Type>
-  Type& write() const {
-    assert(declares(typeid(Type), /*to_write=*/true));
-    return board.get<Type>();
-  }
   gpu::Counters& counters() const { return scope->counters(); }
   void count(std::string_view name, std::uint64_t value) const { counts.add(name, value); }
   // Says why the pass ran: states those of its causes that the log has for this step or, if there are none,
   // `otherwise`.
-  void because(std::string_view otherwise = {}) const;
-
- private:
-  bool declares(std::type_index type, bool to_write) const;
+  void because(std::string_view otherwise = {}) const { scope->because(log.of(pass->causes, otherwise)); }
 };
-
-struct PassInfo {
-  std::string_view name;  // name in timings
-  Resources reads{};
-  Resources reads_before{};
-  Resources writes{};
-  std::uint32_t causes = 0;                // causes in the invalidation log that make it run
-  std::vector<std::string_view> counts{};  // names of what it counts
-};
-
-class FramePass {
- public:
-  explicit FramePass(PassInfo info) : info_(std::move(info)) {}
-  virtual ~FramePass() = default;
-  FramePass(const FramePass&) = delete;
-  FramePass& operator=(const FramePass&) = delete;
-
-  const PassInfo& info() const { return info_; }
-  // Returns whether the pass has anything to update. A pass that is not due may release what it holds.
-  virtual bool due(const FrameContext&) { return true; }
-  virtual Result<void> update(FrameContext& frame) = 0;
-  // Makes the next update compute everything anew.
-  virtual void forget() {}
-  // Returns whether another step on the same scene would change nothing.
-  virtual bool settled() const { return true; }
-
- private:
-  PassInfo info_;
-};
-
-// Holds what passes are made from.
-struct PassSetup {
-  const FrameOptions& options;
-  const lighting::Environment& environment;
-  Blackboard& board;
-};
-
-using MadePass = Result<std::unique_ptr<FramePass>>;
-
-// Each makes a pass; a file under passes/ has those of one kind of work. They fail if a shader does not
-// compile.
-MadePass makeUploadPass(const PassSetup& setup);
-MadePass makeTransformsPass(const PassSetup& setup);
-MadePass makeLightPass(const PassSetup& setup);
-MadePass makePatchBouncesPass(const PassSetup& setup);
-MadePass makeDiffusePass(const PassSetup& setup);
-MadePass makeSeenSkyPass(const PassSetup& setup);
-MadePass makeGlossyPass(const PassSetup& setup);
-MadePass makeVolumePass(const PassSetup& setup);
-MadePass makeNeighborhoodPass(const PassSetup& setup);
-MadePass makeCapturePass(const PassSetup& setup);
-
-MadePass makeSkyPass(const PassSetup& setup);
-MadePass makeLocalShadowsPass(const PassSetup& setup);
-MadePass makeKeyShadowsPass(const PassSetup& setup);
-MadePass makePrefilteredEnvironmentPass(const PassSetup& setup);
-MadePass makeReflectionProbesPass(const PassSetup& setup);
-MadePass makeRasterPass(const PassSetup& setup);
-MadePass makeMarchPass(const PassSetup& setup);
-MadePass makeToneMapPass(const PassSetup& setup);
-MadePass makeOverlayPass(const PassSetup& setup);
-
-struct PassList {
-  std::unique_ptr<SurfaceModules> surface_modules;  // modules that passes add, in the order of the passes
-  std::vector<std::unique_ptr<FramePass>> step, picture;
-};
-
-// Makes all passes, which offer what they keep on the board. Fails if a shader does not compile.
-Result<PassList> makePassList(const FrameOptions& options, const lighting::Environment& environment,
-                              Blackboard& board);
 
 }  // namespace lambent::frame

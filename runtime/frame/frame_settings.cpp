@@ -20,7 +20,7 @@ using Kind = SettingRow::Kind;
 
 // The words are in the order of the enums' values.
 constexpr std::array<std::string_view, 3> kTransferWords = {"unshadowed", "shadowed", "full"};
-constexpr std::array<std::string_view, 3> kWindowWords = {"off", "hann", "auto"};
+constexpr std::array<std::string_view, 2> kWindowWords = {"off", "auto"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using S = FrameSettings;
@@ -37,7 +37,7 @@ auto& memberOf(auto& settings) {
 
 // Returns the row of a member. Its type gives the kind.
 template <auto Member>
-constexpr SettingRow rowOfMember(SettingRow row) {
+constexpr SettingRow rowFor(SettingRow row) {
   using T = std::remove_cvref_t<decltype(memberOf<Member>(std::declval<S&>()))>;
   row.kind = std::is_same_v<T, bool>       ? Kind::Switch
              : std::is_enum_v<T>           ? Kind::Choice
@@ -53,20 +53,38 @@ constexpr SettingRow rowOfMember(SettingRow row) {
   return row;
 }
 
+// Returns the row of a number or a switch. Its greatest value is the most accurate one.
+template <auto Member>
+constexpr SettingRow rowFor(std::string_view name, std::string_view label, double least, double greatest,
+                            std::string_view help, std::string_view former = {}) {
+  return rowFor<Member>({.name = name,
+                         .label = label,
+                         .least = least,
+                         .greatest = greatest,
+                         .finest = greatest,
+                         .help = help,
+                         .former = former});
+}
+template <auto Member>
+constexpr SettingRow rowFor(std::string_view name, std::string_view label, std::string_view help,
+                            std::string_view former = {}) {
+  return rowFor<Member>(name, label, 0.0, 1.0, help, former);
+}
+
 const std::array kRows = {
-    rowOfMember<&S::transfer>(
-        {.name = "transfer",
-         .label = "shadows and bounces",
-         .greatest = 2.0,
-         .words = kTransferWords,
-         .finest = 2.0,
-         .help = "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' "
-                 "own lights are dark"}),
-    rowOfMember<&S::window>({.name = "window",
-                             .label = "ringing suppression",
-                             .greatest = 2.0,
-                             .words = kWindowWords,
-                             .help = "Against ringing of the light: auto, off or hann"}),
+    rowFor<&S::transfer>({.name = "transfer",
+                          .label = "shadows and bounces",
+                          .greatest = 2.0,
+                          .words = kTransferWords,
+                          .finest = 2.0,
+                          .help =
+                              "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, "
+                              "the scenes' own lights are dark"}),
+    rowFor<&S::window>({.name = "window",
+                        .label = "ringing suppression",
+                        .greatest = 1.0,
+                        .words = kWindowWords,
+                        .help = "Against ringing of the light: auto or off"}),
     SettingRow{
         .name = "keys",
         .label = "key lights",
@@ -82,101 +100,54 @@ const std::array kRows = {
               settings.keys.reset();
               if (!std::isnan(value)) settings.keys = static_cast<std::uint32_t>(value);
             }},
-    rowOfMember<&S::key_size>({.name = "key-size",
-                               .label = "key shadow resolution",
-                               .least = 256.0,
-                               .greatest = 8192.0,
-                               .finest = 8192.0,
-                               .help = "Texels along an edge of the finest shadow map of a key light"}),
-    rowOfMember<&S::key_samples>({.name = "key-samples",
-                                  .label = "key shadow samples",
-                                  .least = 4.0,
-                                  .greatest = 128.0,
-                                  .finest = 128.0,
-                                  .help = "Rays of a pixel to a key light"}),
-    rowOfMember<&S::order>({.name = "order",
-                            .label = "SH order of the light",
-                            .least = 1.0,
-                            .greatest = sh::kMaxOrder,
-                            .finest = sh::kMaxOrder,
-                            .help = "Bands of the light that count, at most"}),
-    rowOfMember<&S::glossy_order>({.name = "glossy-order",
-                                   .label = "SH order, glossy",
-                                   .least = 1.0,
-                                   .greatest = sh::kMaxOrder,
-                                   .finest = sh::kMaxOrder,
-                                   .help = "Bands that glossy surfaces reflect, at most"}),
-    rowOfMember<&S::diffuse>(
-        {.name = "diffuse", .label = "diffuse surfaces", .finest = 1.0, .help = "Light on diffuse surfaces"}),
-    rowOfMember<&S::glossy>(
-        {.name = "glossy", .label = "glossy surfaces", .finest = 1.0, .help = "Light on glossy surfaces"}),
-    rowOfMember<&S::volumes>(
-        {.name = "volumes", .label = "volumes", .finest = 1.0, .help = "Clouds, smoke and other media"}),
-    rowOfMember<&S::residual>(
-        {.name = "specular-environment",
-         .label = "sharp sky reflections",
-         .finest = 1.0,
-         .help = "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
-         .former = "residual"}),
-    rowOfMember<&S::reflection_probes>(
+    rowFor<&S::key_size>("key-size", "key shadow resolution", 256.0, 8192.0,
+                         "Texels along an edge of the finest shadow map of a key light"),
+    rowFor<&S::key_samples>("key-samples", "key shadow samples", 4.0, 128.0,
+                            "Rays of a pixel to a key light"),
+    rowFor<&S::order>("order", "SH order of the light", 1.0, sh::kMaxOrder,
+                      "Bands of the light that count, at most"),
+    rowFor<&S::glossy_order>("glossy-order", "SH order, glossy", 1.0, sh::kMaxOrder,
+                             "Bands that glossy surfaces reflect, at most"),
+    rowFor<&S::diffuse>("diffuse", "diffuse surfaces", "Light on diffuse surfaces"),
+    rowFor<&S::glossy>("glossy", "glossy surfaces", "Light on glossy surfaces"),
+    rowFor<&S::volumes>("volumes", "volumes", "Clouds, smoke and other media"),
+    rowFor<&S::residual>("specular-environment", "sharp sky reflections",
+                         "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
+                         "residual"),
+    rowFor<&S::reflection_probes>(
         {.name = "reflection-probes",
          .label = "room reflection probes",
          .greatest = kMostProbes,
          .zero = "off",
          .finest = kMostProbes,
          .help = "Points of a room from which it is captured for the mirrors in it, at\nmost"}),
-    rowOfMember<&S::neighborhoods>(
-        {.name = "neighborhoods",
-         .label = "shadows around bodies",
-         .finest = 1.0,
-         .help = "Bodies with grids around them shade others by these, off: by\ncaptures"}),
-    rowOfMember<&S::local_shadows>(
-        {.name = "local-shadows",
-         .label = "local light shadows",
-         .finest = 1.0,
-         .help = "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
-                 "harmonics, or by the columns of their groups",
-         .former = "near-shadows"}),
-    rowOfMember<&S::local_radii>(
-        {.name = "local-radii",
-         .label = "reach of local lights",
-         .greatest = 1000.0,
-         .finest = 1000.0,
-         .help =
-             "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
-             "only lights within its bounds",
-         .former = "near-radii"}),
-    rowOfMember<&S::patch_bounces>(
-        {.name = "patch-bounces",
-         .label = "bounced local light",
-         .finest = 1.0,
-         .help = "Surfaces send on the light of lights among them, and of key\nlights what their "
-                 "bands get wrong"}),
-    rowOfMember<&S::captures>({.name = "captures",
-                               .label = "local light updates",
-                               .finest = 1.0,
-                               .help = "Bodies light and shadow each other as they stand now"}),
-    rowOfMember<&C::size>(
-        {.name = "capture-size",
-         .label = "update resolution",
-         .least = 4.0,
-         .greatest = 64.0,
-         .finest = 64.0,
-         .help = "Texels along an edge of the cube maps in which light between\nbodies is sampled"}),
-    rowOfMember<&C::subsamples>({.name = "capture-subsamples",
-                                 .label = "update subsamples",
-                                 .least = 1.0,
-                                 .greatest = 16.0,
-                                 .finest = 16.0,
-                                 .help = "Subsamples along an edge of such a texel"}),
-    rowOfMember<&S::captures_per_step>(
-        {.name = "captures-per-frame",
-         .label = "updates per frame",
-         .least = 1.0,
-         .greatest = 1e6,
-         .help = "Light probes that are drawn anew in a frame at most; a picture\nwithout a window is of "
-                 "all of them"}),
-    rowOfMember<&S::march_step_voxels>(
+    rowFor<&S::neighborhoods>("neighborhoods", "shadows around bodies",
+                              "Bodies with grids around them shade others by these, off: by\ncaptures"),
+    rowFor<&S::local_shadows>("local-shadows", "local light shadows",
+                              "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
+                              "harmonics, or by the columns of their groups",
+                              "near-shadows"),
+    rowFor<&S::local_radii>(
+        "local-radii", "reach of local lights", 0.0, 1000.0,
+        "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of "
+        "its radii; 0: only lights within its bounds",
+        "near-radii"),
+    rowFor<&S::patch_bounces>(
+        "patch-bounces", "bounced local light",
+        "Surfaces send on the light of lights among them, and of key\nlights what their bands get wrong"),
+    rowFor<&S::captures>("captures", "local light updates",
+                         "Bodies light and shadow each other as they stand now"),
+    rowFor<&C::size>("capture-size", "update resolution", 4.0, 64.0,
+                     "Texels along an edge of the cube maps in which light between\nbodies is sampled"),
+    rowFor<&C::subsamples>("capture-subsamples", "update subsamples", 1.0, 16.0,
+                           "Subsamples along an edge of such a texel"),
+    rowFor<&S::captures_per_step>({.name = "captures-per-frame",
+                                   .label = "updates per frame",
+                                   .least = 1.0,
+                                   .greatest = 1e6,
+                                   .help = "Light probes that are drawn anew in a frame at most; a "
+                                           "picture\nwithout a window is of all of them"}),
+    rowFor<&S::march_step_voxels>(
         {.name = "march-step",
          .label = "volume step size",
          .least = 0.125,
@@ -308,21 +279,15 @@ std::span<const std::string_view> qualitySettings() {
 }
 
 Result<void> putQuality(FrameSettings& settings, std::string_view name) {
-  if (std::ranges::find(kNames, name) == kNames.end())
-    return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
-  const auto put = [&](auto keys, auto size, auto samples) {
-    settings.keys = keys;
-    settings.key_size = size;
-    settings.key_samples = samples;
+  const auto put = [&](std::optional<std::uint32_t> keys, std::uint32_t size, std::uint32_t samples) {
+    settings.keys = keys, settings.key_size = size, settings.key_samples = samples;
+    return Result<void>();
   };
-  const FrameSettings normal;
-  if (name == "low")
-    put(4u, 2048u, 12u);
-  else if (name == "high")
-    put(32u, 8192u, 64u);
-  else
-    put(normal.keys, normal.key_size, normal.key_samples);
-  return {};
+  const FrameSettings plain;
+  if (name == "low") return put(4, 2048, 12);
+  if (name == "default") return put(plain.keys, plain.key_size, plain.key_samples);
+  if (name == "high") return put(32, 8192, 64);
+  return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
 }
 
 Result<FrameSettings> settingsOfQuality(std::string_view name) {

@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "runtime/base/result.hpp"
-#include "runtime/debug/overlay_options.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/sh/basis.hpp"
@@ -131,9 +130,7 @@ struct FrameOptions {
   Destination destination = Destination::Picture;
   bool show_sky = true;  // false: nothing is drawn where no surface is
   FrameSettings settings{};
-  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // most bytes per frame
-  // If true, less is uploaded when frames take longer than usual.
-  bool pace_uploads = true;
+  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // most bytes per frame; less if it took long
   // If true, captures arrive in the next frame, however long that takes, so that every run gives the same
   // pictures.
   bool wait_for_captures = false;

@@ -53,20 +53,23 @@ std::vector<DisplayChoice> displayChoices() {
   return choices;
 }
 
-// A vertex shader reads at most so many storage blocks (runtime/debug/data_view.glsl).
-constexpr std::uint32_t kVertexStorageBlocks = 5;
+// A vertex shader reads at most so many storage blocks (runtime/surface/surface.vert).
+constexpr GLint kVertexStorageBlocks = 5;
 
 // OpenGL 4.5 leaves storage blocks of vertex shaders optional, and some drivers have none.
-Result<void> checkLimits(const DeviceInfo& info) {
+Result<void> checkLimits(const std::string& renderer) {
+  GLint64 storage = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage);
+  GLint blocks = 0;
+  glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
   const auto lacks = [&](std::string what) {
-    return fail("OpenGL", fmt::format("{} {}", info.renderer, what), "use another GPU or driver");
+    return fail("OpenGL", fmt::format("{} {}", renderer, what), "use another GPU or driver");
   };
-  if (info.max_vertex_storage_blocks < kVertexStorageBlocks)
-    return lacks(fmt::format("has {} storage blocks in vertex shaders, {} are needed",
-                             info.max_vertex_storage_blocks, kVertexStorageBlocks));
-  if (info.max_storage_bytes < Arena::kMaxPageBytes)
-    return lacks(fmt::format("has storage blocks of {} bytes, {} are needed", info.max_storage_bytes,
-                             Arena::kMaxPageBytes));
+  if (blocks < kVertexStorageBlocks)
+    return lacks(
+        fmt::format("has {} storage blocks in vertex shaders, {} are needed", blocks, kVertexStorageBlocks));
+  if (static_cast<std::uint64_t>(storage) < Arena::kMaxPageBytes)
+    return lacks(fmt::format("has storage blocks of {} bytes, {} are needed", storage, Arena::kMaxPageBytes));
   return {};
 }
 
@@ -195,16 +198,12 @@ Result<Context> Context::attachToCurrent(const ContextOptions& options) {
                 "update the driver");
   auto state = std::make_unique<State>();
   state->debug = options.debug;
-  state->info = {.renderer = glText(GL_RENDERER), .version = glText(GL_VERSION)};
-  GLint64 storage = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage);
-  GLint blocks = 0, side = 0;
-  glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
+  GLint side = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
-  state->info.max_storage_bytes = static_cast<std::uint64_t>(storage);
-  state->info.max_vertex_storage_blocks = static_cast<std::uint32_t>(blocks);
-  state->info.max_texture_side = static_cast<std::uint32_t>(side);
-  if (auto enough = checkLimits(state->info); !enough) return failAgain(enough.error());
+  state->info = {.renderer = glText(GL_RENDERER),
+                 .version = glText(GL_VERSION),
+                 .max_texture_side = static_cast<std::uint32_t>(side)};
+  if (auto enough = checkLimits(state->info.renderer); !enough) return failAgain(enough.error());
   if (options.debug) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,24 @@ void Table::reserve(std::size_t byte_count) {
 void Table::assignBytes(std::span<const std::byte> bytes) {
   reserve(bytes.size());
   buffer_.writeBytes(0, bytes);
+}
+
+void Table::updateBytes(std::span<const std::byte> bytes, std::size_t record_bytes, Counters& counters) {
+  const auto same = [&](std::size_t at) { return std::memcmp(&bytes[at], &updated_[at], record_bytes) == 0; };
+  if (bytes.size() != updated_.size()) {
+    assignBytes(bytes);
+    counters.uploaded_bytes += bytes.size();
+  } else {
+    for (std::size_t first = 0; first < bytes.size(); first += record_bytes) {
+      if (same(first)) continue;
+      std::size_t end = first + record_bytes;
+      while (end < bytes.size() && !same(end)) end += record_bytes;
+      buffer_.writeBytes(first, bytes.subspan(first, end - first));
+      counters.uploaded_bytes += end - first;
+      first = end;
+    }
+  }
+  updated_.assign(bytes.begin(), bytes.end());
 }
 
 Texture::Texture(std::string_view label, const TextureDesc& desc)
@@ -138,7 +157,9 @@ Sampler::Sampler(GLenum wrap_s, GLenum wrap_t, GLenum mag_filter, GLenum min_fil
 }
 
 Framebuffer::Framebuffer(std::string_view label, const Texture& color, const Texture* depth)
-    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })) {
+    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })),
+      width_(color.desc().width),
+      height_(color.desc().height) {
   glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, color.id(), 0);
   if (depth != nullptr) glNamedFramebufferTexture(id(), GL_DEPTH_ATTACHMENT, depth->id(), 0);
   setLabel(GL_FRAMEBUFFER, id(), label);
@@ -146,7 +167,9 @@ Framebuffer::Framebuffer(std::string_view label, const Texture& color, const Tex
 }
 
 Framebuffer::Framebuffer(std::string_view label, const Texture& layers)
-    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })) {
+    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })),
+      width_(layers.desc().width),
+      height_(layers.desc().height) {
   std::vector<GLenum> colors;
   for (std::uint32_t i = 0; i < layers.desc().layers; ++i) {
     colors.push_back(GL_COLOR_ATTACHMENT0 + i);
@@ -157,9 +180,41 @@ Framebuffer::Framebuffer(std::string_view label, const Texture& layers)
   assert(glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
 }
 
+void Framebuffer::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, id());
+  glViewport(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_));
+}
+
+void Framebuffer::clearColor(const std::array<float, 4>& color) const {
+  glClearNamedFramebufferfv(id(), GL_COLOR, 0, color.data());
+}
+
+void Framebuffer::clearDepth() const {
+  constexpr float kFar = 1.0f;
+  glClearNamedFramebufferfv(id(), GL_DEPTH, 0, &kFar);
+}
+
+void testDepth() {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+}
+
+void blendPremultiplied() {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
 VertexArray::VertexArray(std::string_view label)
     : Handle(made([](GLuint* id) { glCreateVertexArrays(1, id); })) {
   setLabel(GL_VERTEX_ARRAY, id(), label);
+}
+
+void VertexArray::draw(std::size_t vertices, Counters& counters, std::size_t instances) const {
+  glBindVertexArray(id());
+  glDrawArraysInstanced(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices), static_cast<GLsizei>(instances));
+  counters.draws += static_cast<std::uint32_t>(instances);
+  ++counters.draw_calls;
 }
 
 }  // namespace lambent::gpu

@@ -3,13 +3,16 @@
 // reports, or for lack of memory, for which buffers and textures throw OutOfMemory.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 
@@ -79,24 +82,50 @@ class Buffer : public Handle<BufferTraits> {
   std::size_t byte_count_ = 0;
 };
 
+// Counts commands and uploads, which are reported per pass and frame.
+struct Counters {
+  std::uint32_t dispatches = 0;
+  std::uint32_t draws = 0;       // draw commands, including each one of a multi-draw
+  std::uint32_t draw_calls = 0;  // GL calls that issued them
+  std::uint64_t uploaded_bytes = 0;
+};
+
 // Owns a storage buffer that grows with its contents, for tables that the CPU maintains and the GPU reads.
 class Table {
  public:
   explicit Table(std::string_view label) : label_(label) {}
 
+  // Replaces the contents by those of a vector, an array or a span.
+  void assign(const std::ranges::contiguous_range auto& values) {
+    assignBytes(std::as_bytes(std::span(values)));
+  }
+  // Does the same, and counts it.
+  void assign(const std::ranges::contiguous_range auto& values, Counters& counters) {
+    assign(values);
+    counters.uploaded_bytes += std::span(values).size_bytes();
+  }
   template <typename T>
-  void assign(std::span<const T> values) {
-    assignBytes(std::as_bytes(values));
+  void assignOne(const T& value) {
+    assignBytes(std::as_bytes(std::span(&value, 1)));
+  }
+  // Uploads the records that differ from those of the last call, or all of them if their number does.
+  template <typename Record>
+  void update(const std::vector<Record>& records, Counters& counters) {
+    updateBytes(std::as_bytes(std::span(records)), sizeof(Record), counters);
   }
   void assignBytes(std::span<const std::byte> bytes);
   void reserve(std::size_t byte_count);  // contents are lost when it grows
   void bindStorage(GLuint binding) const { buffer_.bindStorage(binding); }
+  void bindUniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer_.id()); }
   Buffer& buffer() { return buffer_; }
   const Buffer& buffer() const { return buffer_; }
 
  private:
+  void updateBytes(std::span<const std::byte> bytes, std::size_t record_bytes, Counters& counters);
+
   std::string_view label_;  // refers to a literal
   Buffer buffer_;
+  std::vector<std::byte> updated_;  // contents after update()
 };
 
 struct TextureDesc {
@@ -118,7 +147,11 @@ class Texture : public Handle<TextureTraits> {
   // change.
   static Result<Texture> sharing(std::string_view label, GLuint other);
   const TextureDesc& desc() const { return desc_; }
-  void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
+  // Binds it with its own sampling. Bind another sampler afterwards.
+  void bind(GLuint unit) const {
+    glBindTextureUnit(unit, id());
+    glBindSampler(unit, 0);
+  }
   // Makes samplers interpolate between texels and repeat the last ones beyond the edges.
   void interpolate(GLint min_filter = GL_LINEAR) const;
 
@@ -141,12 +174,30 @@ class Framebuffer : public Handle<FramebufferTraits> {
   Framebuffer(std::string_view label, const Texture& color, const Texture* depth);
   // Attaches each layer of an array as a colour of its own.
   Framebuffer(std::string_view label, const Texture& layers);
+
+  // Binds it for drawing, with the viewport over all of it.
+  void bind() const;
+  void clearColor(const std::array<float, 4>& color) const;
+  // Clears the depth to the far end. Needs writing of depths to be on.
+  void clearDepth() const;
+
+ private:
+  std::uint32_t width_ = 0, height_ = 0;
 };
+
+// Makes draws test and write depths.
+void testDepth();
+
+// Blends colours that are premultiplied by alpha, until glDisable(GL_BLEND).
+void blendPremultiplied();
 
 class VertexArray : public Handle<VertexArrayTraits> {
  public:
   VertexArray() = default;
   explicit VertexArray(std::string_view label);
+
+  // Draws triangles whose vertices the shader makes of their number.
+  void draw(std::size_t vertices, Counters& counters, std::size_t instances = 1) const;
 };
 
 // Gives the commands of a scope a name in debuggers.
@@ -158,14 +209,6 @@ class DebugGroup {
   ~DebugGroup() { glPopDebugGroup(); }
   DebugGroup(const DebugGroup&) = delete;
   DebugGroup& operator=(const DebugGroup&) = delete;
-};
-
-// Counts commands and uploads, which are reported per pass and frame.
-struct Counters {
-  std::uint32_t dispatches = 0;
-  std::uint32_t draws = 0;       // draw commands, including each one of a multi-draw
-  std::uint32_t draw_calls = 0;  // GL calls that issued them
-  std::uint64_t uploaded_bytes = 0;
 };
 
 // Says that the driver has no memory for a buffer or a texture. It is thrown, as std::bad_alloc is, since

@@ -1,36 +1,24 @@
 #include "runtime/gpu/pass_timers.hpp"
 
-#include <utility>
-
 namespace lambent::gpu {
 
 PassTimers::Scope::Scope(PassTimers& timers, std::string_view name)
-    : timers_(timers), group_(name), pass_(timers.frames_[timers.current_].passes.size()) {
-  Frame& frame = timers.frames_[timers.current_];
-  frame.passes.push_back(
+    : frame_(timers.frames_[timers.current_]), group_(name), pass_(frame_.passes.size()) {
+  frame_.passes.push_back(
       {.name = std::string(name), .cpu_ms = 0.0, .gpu_ms = -1.0, .counters = {}, .reason = {}});
-  while (frame.queries.size() < 2 * frame.passes.size()) {
+  while (frame_.queries.size() < 2 * frame_.passes.size()) {
     GLuint id = 0;
     glCreateQueries(GL_TIMESTAMP, 1, &id);
-    frame.queries.emplace_back(id);
+    frame_.queries.emplace_back(id);
   }
-  glQueryCounter(frame.queries[2 * pass_].id(), GL_TIMESTAMP);
+  glQueryCounter(frame_.queries[2 * pass_].id(), GL_TIMESTAMP);
   start_ = std::chrono::steady_clock::now();
 }
 
 PassTimers::Scope::~Scope() {
-  Frame& frame = timers_.frames_[timers_.current_];
-  frame.passes[pass_].cpu_ms =
+  frame_.passes[pass_].cpu_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  glQueryCounter(frame.queries[2 * pass_ + 1].id(), GL_TIMESTAMP);
-}
-
-Counters& PassTimers::Scope::counters() {
-  return timers_.frames_[timers_.current_].passes[pass_].counters;
-}
-
-void PassTimers::Scope::because(std::string reason) {
-  timers_.frames_[timers_.current_].passes[pass_].reason = std::move(reason);
+  glQueryCounter(frame_.queries[2 * pass_ + 1].id(), GL_TIMESTAMP);
 }
 
 void PassTimers::beginFrame() {

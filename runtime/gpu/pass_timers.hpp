@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/gpu/objects.hpp"
@@ -21,6 +23,14 @@ struct PassTime {
 };
 
 class PassTimers {
+  struct QueryTraits {
+    static void destroy(GLuint id) { glDeleteQueries(1, &id); }
+  };
+  struct Frame {
+    std::vector<PassTime> passes;
+    std::vector<Handle<QueryTraits>> queries;  // two per pass, reused in later frames
+  };
+
  public:
   // Times the commands of its lifetime, which also form a debug group of this name.
   class Scope {
@@ -29,11 +39,11 @@ class PassTimers {
     ~Scope();
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
-    Counters& counters();
-    void because(std::string reason);
+    Counters& counters() { return frame_.passes[pass_].counters; }
+    void because(std::string reason) { frame_.passes[pass_].reason = std::move(reason); }
 
    private:
-    PassTimers& timers_;
+    Frame& frame_;
     DebugGroup group_;
     std::size_t pass_;
     std::chrono::steady_clock::time_point start_;
@@ -46,13 +56,6 @@ class PassTimers {
   const std::vector<PassTime>& latest() const { return latest_; }
 
  private:
-  struct QueryTraits {
-    static void destroy(GLuint id) { glDeleteQueries(1, &id); }
-  };
-  struct Frame {
-    std::vector<PassTime> passes;
-    std::vector<Handle<QueryTraits>> queries;  // two per pass, reused in later frames
-  };
   void collect(Frame& frame, bool wait);
 
   static constexpr std::size_t kFramesInFlight = 4;

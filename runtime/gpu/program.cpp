@@ -199,4 +199,18 @@ void WorkList::dispatch(std::size_t index, std::uint32_t binding, Counters& coun
   ++counters.dispatches;
 }
 
+Result<void> Programs::use(std::initializer_list<Stage> stages, std::vector<Define> defines) {
+  std::string label;
+  for (const Stage& stage : stages) label += fmt::format("{}{}", label.empty() ? "" : " ", stage.file);
+  for (const Define& define : defines) label += fmt::format(" {} {}", define.name, define.value);
+  auto found = programs_.find(label);
+  if (found == programs_.end()) {
+    Result<Program> made = Program::create(label, stages, texts_, defines);
+    if (!made) return failAgain(made.error());
+    found = programs_.emplace(label, std::move(*made)).first;
+  }
+  found->second.use();
+  return {};
+}
+
 }  // namespace lambent::gpu

@@ -74,6 +74,22 @@ class Program : public Handle<ProgramTraits> {
   explicit Program(GLuint id) : Handle(id) {}
 };
 
+// Programs compiles kernels and other programs when they are first needed, and keeps them.
+class Programs {
+ public:
+  explicit Programs(std::span<const FindText> texts) : texts_(texts) {}
+
+  // Makes the kernel of this entry file the current program. Fails if it does not compile on this device.
+  Result<void> use(std::string_view file, std::vector<Define> defines = {}) {
+    return use({{GL_COMPUTE_SHADER, file}}, std::move(defines));
+  }
+  Result<void> use(std::initializer_list<Stage> stages, std::vector<Define> defines = {});
+
+ private:
+  std::span<const FindText> texts_;
+  std::map<std::string, Program, std::less<>> programs_;  // keyed by files and defines
+};
+
 // Holds the work of a compute pass as batches of work items. Each batch is one indirect dispatch whose items
 // share all bindings (one arena page, one program). In the kernel, work group i = x + y * 65535 processes
 // work[i] and does nothing if i >= work_count; OpenGL guarantees at most 65535 groups along x. A list that

@@ -12,12 +12,9 @@
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/library/convert.hpp"
-#include "runtime/scene/components.hpp"
-#include "runtime/scene/instantiate.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/transfer/codebook.hpp"
-#include "runtime/transfer/layout.hpp"
 
 namespace lambent {
 
@@ -68,8 +65,7 @@ const char* nameOf(TransferPlace place) {
 
 struct Bundle::File {
   bundle::Reader reader;
-  ecs::Registry registry;
-  scene::SceneInstance instance;  // as baked
+  std::vector<glm::mat4> world_from_node;  // as baked
   std::vector<GroupInfo> groups;
   std::vector<SurfaceInfo> surfaces;
 
@@ -95,12 +91,9 @@ Expected<Bundle> Bundle::open(const std::string& path) {
   Result<bundle::Reader> reader = bundle::Reader::open(path);
   if (!reader) return failureOf(reader.error());
   auto file = std::make_unique<File>(
-      File{.reader = std::move(*reader), .registry = {}, .instance = {}, .groups = {}, .surfaces = {}});
+      File{.reader = std::move(*reader), .world_from_node = {}, .groups = {}, .surfaces = {}});
   const bundle::Description& description = file->description();
-  Result<scene::SceneInstance> instance =
-      scene::instantiate(file->registry, description, {.bundle_id = path});
-  if (!instance) return failureOf(instance.error());
-  file->instance = std::move(*instance);
+  file->world_from_node = gltf::worldTransforms(description.nodes);
   for (std::uint32_t g = 0; g < description.groups.size(); ++g) {
     const bundle::Group& group = description.groups[g];
     GroupInfo info{.name = group.name,
@@ -152,8 +145,8 @@ Expected<SurfaceData> Bundle::surface(std::uint32_t index) const {
   Result<transfer::VertexWeights> rows = file_->reader.readRows(index);
   if (!rows) return failureOf(rows.error());
 
-  const auto& place = file_->registry.get<scene::WorldTransform>(file_->instance.nodes[draw.node]);
-  const glm::mat4 group_from_mesh = glm::inverse(file_->worldFromGroup(draw.group)) * place.world_from_node;
+  const glm::mat4 group_from_mesh =
+      glm::inverse(file_->worldFromGroup(draw.group)) * file_->world_from_node[draw.node];
   const glm::mat3 for_normals = (draw.back ? -1.0f : 1.0f) * normalMatrix(glm::mat3(group_from_mesh));
   SurfaceData data;
   for (const glm::vec3& position : mesh->positions)

@@ -25,14 +25,6 @@ const float kGoldenAngle = 2.39996323;
 const int kAllShares = 256, kDiscPoints = 48;
 const float kLargestHalf = 65504.0;
 
-// Returns a frame about the unit vector n [Duff et al., Building an orthonormal basis, revisited, 2017].
-mat3 frameAbout(vec3 n) {
-  float facing = n.z >= 0.0 ? 1.0 : -1.0;
-  float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
-  return mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x),
-              vec3(b, facing + n.y * n.y * a, -n.y), n);
-}
-
 // Returns the mean radiance over what the mip level covers there.
 vec3 meanOfSky(vec3 direction, float level) {
   vec4 weighted = textureLod(sky, direction, level);

@@ -52,16 +52,13 @@ class Unshaded {
   World& world_;
 };
 
-}  // namespace
+struct Drawn {
+  spec::RgbaImage picture;
+  SettingPoint point;
+};
 
-double FrameCost::milliseconds(std::string_view pass) const {
-  for (const gpu::PassTime& time : passes)
-    if (time.name == pass) return time.gpu_ms > 0.0 ? time.gpu_ms : time.cpu_ms;
-  return 0.0;
-}
-
-Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettings& settings,
-                                   const MeasureOptions& options) {
+Result<Drawn> drawOnce(const MeasuredScene& scene, const FrameSettings& settings,
+                       const MeasureOptions& options) {
   const auto& [world, environment, view] = scene;
   const Unshaded unshaded(world);
   Result<Frame> frame = Frame::create({.size = options.size,
@@ -73,7 +70,7 @@ Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettin
   if (!frame) return failAgain(frame.error());
   if (const auto rested = frame->rest(world, environment); !rested) return failAgain(rested.error());
   if (Result<void> done = frame->render(world, environment, view); !done) return failAgain(done.error());
-  MeasuredFrame measured{.picture = frame->readLinear(), .cost = {}};
+  Drawn drawn{.picture = frame->readLinear(), .point = {}};
   std::vector<std::vector<gpu::PassTime>> frames;
   for (std::uint32_t i = 0; i < options.repeats; ++i) {
     frame->forget();
@@ -81,13 +78,30 @@ Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettin
     frame->timers().finish();
     frames.push_back(frame->timers().latest());
   }
-  measured.cost.passes = medians(frames);
-  for (const gpu::PassTime& pass : measured.cost.passes) {
-    measured.cost.cpu_ms += pass.cpu_ms;
-    measured.cost.gpu_ms += std::max(pass.gpu_ms, 0.0);
+  drawn.point.passes = medians(frames);
+  for (const gpu::PassTime& pass : drawn.point.passes) {
+    drawn.point.cpu_ms += pass.cpu_ms;
+    drawn.point.gpu_ms += std::max(pass.gpu_ms, 0.0);
   }
-  return measured;
+  return drawn;
 }
+
+Result<Drawn> draw(const MeasuredScene& scene, FrameSettings settings, const SettingRow& row, double value,
+                   const MeasureOptions& options) {
+  if (Result<void> done = putSetting(row, settings, value); !done) return failAgain(done.error());
+  // The number of key lights is a property of the environment, not of the frame.
+  std::optional<lighting::Environment> parted;
+  if (row.name == "keys") {
+    parted = scene.environment;
+    parted->setMostKeys(settings.mostKeys());
+  }
+  Result<Drawn> drawn =
+      drawOnce({scene.world, parted ? *parted : scene.environment, scene.view}, settings, options);
+  if (drawn) drawn->point.value = value;
+  return drawn;
+}
+
+}  // namespace
 
 Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage& reference) {
   if (picture.width != reference.width || picture.height != reference.height)
@@ -105,59 +119,19 @@ Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage
   return std::sqrt(squares / energy);
 }
 
-namespace {
-
-struct Drawn {
-  spec::RgbaImage picture;
-  SettingPoint point;
-};
-
-Result<Drawn> draw(const MeasuredScene& scene, FrameSettings settings, const SettingRow& row, double value,
-                   const MeasureOptions& options) {
-  if (Result<void> done = putSetting(row, settings, value); !done) return failAgain(done.error());
-  // The number of key lights is a property of the environment, not of the frame.
-  std::optional<lighting::Environment> parted;
-  if (row.name == "keys") {
-    parted = scene.environment;
-    parted->setMostKeys(settings.mostKeys());
-  }
-  Result<MeasuredFrame> measured =
-      measureFrame({scene.world, parted ? *parted : scene.environment, scene.view}, settings, options);
-  if (!measured) return failAgain(measured.error());
-  return Drawn{.picture = std::move(measured->picture), .point = {std::move(measured->cost), value, 0.0}};
-}
-
-}  // namespace
-
-Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const FrameSettings& settings,
-                                               const SettingRow& row, std::span<const double> values,
-                                               const MeasureOptions& options) {
+Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
+                                   const SettingRow& row, const MeasureOptions& options) {
   if (!row.finest)
     return fail(std::string(row.name), "has no finest value to measure against", "choose a knob of accuracy");
   Result<Drawn> finest = draw(scene, settings, row, *row.finest, options);
   if (!finest) return failAgain(finest.error());
-  std::vector<SettingPoint> points;
-  for (const double value : values) {
-    if (value == *row.finest) {
-      points.push_back(finest->point);
-      continue;
-    }
-    Result<Drawn> drawn = draw(scene, settings, row, value, options);
-    if (!drawn) return failAgain(drawn.error());
-    const Result<double> error = relativeRms(drawn->picture, finest->picture);
-    if (!error) return failAgain(error.error());
-    drawn->point.error = *error;
-    points.push_back(std::move(drawn->point));
-  }
-  return points;
-}
-
-Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
-                                   const SettingRow& row, const MeasureOptions& options) {
-  const std::vector<double> values = {row.get(settings), row.finest.value_or(0.0)};
-  Result<std::vector<SettingPoint>> points = sweepSetting(scene, settings, row, values, options);
-  if (!points) return failAgain(points.error());
-  return SettingCost{.now = std::move(points->front()), .finest = std::move(points->back())};
+  if (row.get(settings) == *row.finest) return SettingCost{.now = finest->point, .finest = finest->point};
+  Result<Drawn> now = draw(scene, settings, row, row.get(settings), options);
+  if (!now) return failAgain(now.error());
+  const Result<double> error = relativeRms(now->picture, finest->picture);
+  if (!error) return failAgain(error.error());
+  now->point.error = *error;
+  return SettingCost{.now = std::move(now->point), .finest = std::move(finest->point)};
 }
 
 }  // namespace lambent::frame

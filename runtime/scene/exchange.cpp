@@ -56,12 +56,8 @@ class Exchange {
       const ecs::Entity old = find(old_of_, entity);
       if (!registry_.alive(made)) continue;  // the user destroyed it
       exchangeTransform(made, old, entity);
-      exchangeFields<Name>(made, old, entity);
-      exchangeFields<CameraComponent>(made, old, entity);
-      exchangeFields<LocalLightComponent>(made, old, entity);
-      exchangeFields<LampComponent>(made, old, entity);
-      exchangeFields<AnimationComponent>(made, old, entity);
-      exchangeFields<MaterialComponent>(made, old, entity);
+      exchangeFields<Name, CameraComponent, LocalLightComponent, LampComponent, AnimationComponent,
+                     MaterialComponent>(made, old, entity);
       exchangeDerived(made, old, entity);
     }
     for (const ecs::Entity player : to_pose_)
@@ -159,13 +155,15 @@ class Exchange {
     return value;
   }
 
-  template <class Component>
+  template <class... Component>
   void exchangeFields(ecs::Entity entity, ecs::Entity old, ecs::Entity now) {
-    std::optional<Component> value = merged<Component>(entity, old, now);
-    if (!value) return;
-    if constexpr (std::is_same_v<Component, AnimationComponent>)
-      if (const auto* stands = registry_.tryGet<Component>(entity)) value->posed_s = stands->posed_s;
-    registry_.emplace<Component>(entity, std::move(*value));
+    const auto exchange = [&]<class C>(std::optional<C> value) {
+      if (!value) return;
+      if constexpr (std::is_same_v<C, AnimationComponent>)
+        if (const auto* stands = registry_.tryGet<C>(entity)) value->posed_s = stands->posed_s;
+      registry_.emplace<C>(entity, std::move(*value));
+    };
+    (exchange(merged<Component>(entity, old, now)), ...);
   }
 
   void exchangeTransform(ecs::Entity entity, ecs::Entity old, ecs::Entity now) {

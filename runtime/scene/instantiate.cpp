@@ -200,39 +200,34 @@ class Instantiation {
           instance_.lamps.back().push_back(instance_.nodes[lights[k].index]);
           continue;
         }
-        const ecs::Entity entity = registry_.create();
-        instance_.lamps.back().push_back(entity);
-        registry_.emplace<LampComponent>(
-            entity, LampComponent{
-                        .bundle = options_.bundle_index, .group = g, .column = k, .color = lights[k].color});
-        const std::string& name = description_.materials[lights[k].index].name;
-        registry_.emplace<Name>(entity, name);
-        giveId(entity, instance_.groups[g], StableKind::Lamp, name);
+        make(instance_.lamps.back(), instance_.groups[g], StableKind::Lamp,
+             description_.materials[lights[k].index].name,
+             LampComponent{
+                 .bundle = options_.bundle_index, .group = g, .column = k, .color = lights[k].color});
       }
     }
   }
 
   void makeAnimations() {
-    for (std::uint32_t i = 0; i < description_.animations.size(); ++i) {
-      const std::string& name = description_.animations[i].name;
-      const ecs::Entity entity = registry_.create();
-      instance_.animations.push_back(entity);
-      registry_.emplace<AnimationComponent>(
-          entity, AnimationComponent{.bundle = options_.bundle_index, .animation = i});
-      registry_.emplace<Name>(entity, name);
-      giveId(entity, instance_.root, StableKind::Animation, name);
-    }
+    for (std::uint32_t i = 0; i < description_.animations.size(); ++i)
+      make(instance_.animations, instance_.root, StableKind::Animation, description_.animations[i].name,
+           AnimationComponent{.bundle = options_.bundle_index, .animation = i});
   }
 
   void makeMaterials() {
-    for (std::uint32_t i = 0; i < description_.materials.size(); ++i) {
-      const gltf::Material& material = description_.materials[i];
-      const ecs::Entity entity = registry_.create();
-      instance_.materials.push_back(entity);
-      registry_.emplace<MaterialComponent>(entity, materialComponent(material, options_.bundle_index, i));
-      registry_.emplace<Name>(entity, material.name);
-      giveId(entity, instance_.root, StableKind::Material, material.name);
-    }
+    for (std::uint32_t i = 0; i < description_.materials.size(); ++i)
+      make(instance_.materials, instance_.root, StableKind::Material, description_.materials[i].name,
+           materialComponent(description_.materials[i], options_.bundle_index, i));
+  }
+
+  // Makes an entity of a list, with a component.
+  template <class Component>
+  void make(std::vector<ecs::Entity>& list, ecs::Entity parent, StableKind kind, const std::string& name,
+            const Component& component) {
+    const ecs::Entity entity = list.emplace_back(registry_.create());
+    registry_.emplace<Component>(entity, component);
+    registry_.emplace<Name>(entity, name);
+    giveId(entity, parent, kind, name);
   }
 
   ecs::Entity nodeOrRoot(std::int32_t node) const {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -48,18 +48,6 @@ void fromValue(T& member, const Value& value) {
   }
 }
 
-template <class C, std::size_t I>
-Value getField(const ecs::Registry& registry, ecs::Entity entity) {
-  const auto fields = C::fields();
-  return toValue(std::get<I>(fields).of(registry.get<C>(entity)));
-}
-
-template <class C, std::size_t I>
-void putField(ecs::Registry& registry, ecs::Entity entity, const Value& value) {
-  const auto fields = C::fields();
-  fromValue(std::get<I>(fields).of(registry.edit<C>(entity)), value);
-}
-
 // ---- rows
 
 template <class C, std::size_t I>
@@ -80,8 +68,12 @@ FieldInfo fieldInfo() {
                                      static_cast<float>(field.range->greatest)};
   }
   if constexpr (std::is_enum_v<T>) info.words = enumWords(field.default_value);
-  info.get_ = &getField<C, I>;
-  info.put_ = &putField<C, I>;
+  info.get_ = [](const ecs::Registry& registry, ecs::Entity entity) {
+    return toValue(std::get<I>(C::fields()).of(registry.get<C>(entity)));
+  };
+  info.put_ = [](ecs::Registry& registry, ecs::Entity entity, const Value& value) {
+    fromValue(std::get<I>(C::fields()).of(registry.edit<C>(entity)), value);
+  };
   return info;
 }
 
@@ -152,20 +144,12 @@ std::string_view kindWord(ValueKind kind) {
 bool sameBits(const Value& a, const Value& b) {
   if (a.index() != b.index()) return false;
   return std::visit(
-      [&](const auto& left) {
-        using T = std::remove_cvref_t<decltype(left)>;
+      [&]<class T>(const T& left) {
         const T& right = std::get<T>(b);
-        const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
-        if constexpr (std::is_same_v<T, float>) {
-          return bits(left) == bits(right);
-        } else if constexpr (std::is_same_v<T, glm::vec3> || std::is_same_v<T, glm::quat>) {
-          for (int i = 0; i < T::length(); ++i) {
-            if (bits(left[i]) != bits(right[i])) return false;
-          }
-          return true;
-        } else {
+        if constexpr (std::is_trivially_copyable_v<T>)
+          return std::memcmp(&left, &right, sizeof(T)) == 0;
+        else
           return left == right;
-        }
       },
       a);
 }
@@ -193,26 +177,26 @@ Result<void> FieldInfo::check(const Value& value) const {
   };
   if (kindOf(value) != kind)
     return wrong(fmt::format("takes {}, not {}", kindWord(kind), kindWord(kindOf(value))), "");
-  const auto inRange = [&](float number) -> Result<void> {
-    if (!range || (number >= range->least && number <= range->greatest)) return {};
-    return wrong(fmt::format("{} lies outside {}..{}", valueText(value), range->least, range->greatest), "");
-  };
   switch (kind) {
     case ValueKind::Whole:
-      return inRange(static_cast<float>(std::get<std::int32_t>(value)));
     case ValueKind::Number: {
-      const float number = std::get<float>(value);
+      const auto* whole = std::get_if<std::int32_t>(&value);
+      const float number = whole ? static_cast<float>(*whole) : std::get<float>(value);
       if (!std::isfinite(number)) return wrong("is not a finite number", "");
-      return inRange(number);
+      if (range && !(number >= range->least && number <= range->greatest))
+        return wrong(fmt::format("{} lies outside {}..{}", valueText(value), range->least, range->greatest),
+                     "");
+      return {};
     }
-    case ValueKind::Vector:
-      if (!isFinite(std::get<glm::vec3>(value))) return wrong("is not finite", "give three finite numbers");
-      if (const glm::vec3 v = std::get<glm::vec3>(value); color && (v.x < 0.0f || v.y < 0.0f || v.z < 0.0f))
+    case ValueKind::Vector: {
+      const glm::vec3 v = std::get<glm::vec3>(value);
+      if (!isFinite(v)) return wrong("is not finite", "give three finite numbers");
+      if (color && (v.x < 0.0f || v.y < 0.0f || v.z < 0.0f))
         return wrong(fmt::format("{} is a color with a negative part", valueText(value)), "");
       return {};
+    }
     case ValueKind::Rotation: {
-      const glm::quat q = std::get<glm::quat>(value);
-      const float length = glm::length(q);
+      const float length = glm::length(std::get<glm::quat>(value));
       // A length far from 1 is a mistake. A length near 1 is rounding, which does no harm.
       if (!(std::abs(length - 1.0f) <= 1e-3f))
         return wrong(fmt::format("is no rotation: its length is {}", length), "give a unit quaternion");
@@ -220,7 +204,7 @@ Result<void> FieldInfo::check(const Value& value) const {
     }
     case ValueKind::Word: {
       const std::string& text = std::get<Word>(value).text;
-      if (std::find(words.begin(), words.end(), text) != words.end()) return {};
+      if (std::ranges::find(words, text) != words.end()) return {};
       return wrong(fmt::format("knows no \"{}\"", text), fmt::format("use {}", fmt::join(words, ", ")));
     }
     case ValueKind::Flag:
@@ -247,15 +231,13 @@ bool FieldInfo::restore(ecs::Registry& registry, ecs::Entity entity, const Value
 }
 
 const FieldInfo* ComponentInfo::field(std::string_view field_name) const {
-  const auto found = std::find_if(fields.begin(), fields.end(),
-                                  [&](const FieldInfo& info) { return info.name == field_name; });
+  const auto found = std::ranges::find(fields, field_name, &FieldInfo::name);
   return found == fields.end() ? nullptr : &*found;
 }
 
 const ComponentInfo* findComponent(std::string_view name) {
   const auto all = components();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const ComponentInfo& info) { return info.name == name; });
+  const auto found = std::ranges::find(all, name, &ComponentInfo::name);
   return found == all.end() ? nullptr : &*found;
 }
 

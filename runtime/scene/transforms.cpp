@@ -98,29 +98,6 @@ void updateTransforms(ecs::Registry& registry) {
   }
 }
 
-namespace {
-
-// Returns a unit vector that is orthogonal to the first `known` of the orthonormal `axes`.
-glm::dvec3 anyOrthogonal(const std::array<glm::dvec3, 3>& axes, int known) {
-  glm::dvec3 best{1.0, 0.0, 0.0};
-  double best_length = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    glm::dvec3 candidate{0.0};
-    candidate[i] = 1.0;
-    for (int k = 0; k < known; ++k) {
-      const glm::dvec3& axis = axes[static_cast<std::size_t>(k)];
-      candidate -= glm::dot(candidate, axis) * axis;
-    }
-    if (const double length = glm::length(candidate); length > best_length) {
-      best = candidate / length;
-      best_length = length;
-    }
-  }
-  return best;
-}
-
-}  // namespace
-
 glm::mat4 localMatrix(const Transform& t) {
   const glm::mat3 rotation = glm::mat3_cast(t.rotation);
   const glm::vec3 x = rotation[0] * t.scale.x, y = rotation[1] * t.scale.y, z = rotation[2] * t.scale.z;
@@ -153,12 +130,17 @@ void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node) {
   }
   for (std::size_t j = 0; j < 3; ++j) {
     if (found[j]) continue;
-    std::array<glm::dvec3, 3> known{};
-    int count = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (found[i]) known[static_cast<std::size_t>(count++)] = axes[i];
+    double longest = 0.0;  // of what the axes found leave of +X, +Y and +Z
+    for (int i = 0; i < 3; ++i) {
+      glm::dvec3 rest(0.0);
+      rest[i] = 1.0;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (found[k]) rest -= glm::dot(rest, axes[k]) * axes[k];
+      if (const double length = glm::length(rest); length > longest) {
+        longest = length;
+        axes[j] = rest / length;
+      }
     }
-    axes[j] = anyOrthogonal(known, count);
     found[j] = true;
   }
   glm::dmat3 rotation(axes[0], axes[1], axes[2]);

@@ -9,8 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/sh/zonal.hpp"
-
 namespace lambent::sh {
 
 namespace {
@@ -21,31 +19,6 @@ constexpr float kGuard = 1e-5f;
 constexpr float kWorthIt = 2e-5f;  // gain in blend below which the climb shortens its step
 // A channel whose ratio of mean to largest coefficient is smaller than this is ignored.
 constexpr float kHopeless = 1e-6f;
-
-// --- the positive kernel ---
-
-// Evaluates the polynomial p(t) of degree k. For odd orders it is the Legendre polynomial, for even orders
-// the Jacobi (0, 1) polynomial (P_k + P_k+1) / (1 + t).
-struct Extremal {
-  int degree;
-  bool even_order;
-
-  double operator()(double t) const {
-    if (!even_order) return legendre(degree, t);
-    if (t + 1 < 1e-9) t = -1 + 1e-9;  // the quotient is a polynomial, so a nearby value is good enough
-    return (legendre(degree, t) + legendre(degree + 1, t)) / (1 + t);
-  }
-
-  // Scans from 1 downwards. Zeros of degrees up to 4 are much further apart than the steps.
-  double largestZero() const {
-    double high = 1, low = 1;
-    while ((*this)(low) > 0) high = low, low -= 1.0 / 64;
-    for (int k = 0; k < 60; ++k) ((*this)(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
-    return 0.5 * (low + high);
-  }
-};
-
-// --- the least blend ---
 
 // Returns the blend a that lifts light to the guard: (1 - a) as_is + a lifted = guard. It is 0 if the light
 // is positive already, and 1 if even the kernel does not suffice.
@@ -219,36 +192,6 @@ float leastBlend(const Channels& channels) {
   return best;
 }
 
-BandWeights hannWeights(int order) {
-  BandWeights weights{};
-  for (int l = 0; l < order; ++l)
-    weights[static_cast<std::size_t>(l)] =
-        static_cast<float>(0.5 * (1 + std::cos(std::numbers::pi * l / static_cast<double>(order))));
-  return weights;
-}
-
-BandWeights integratedPositiveWeights(int order) {
-  BandWeights weights{};
-  weights[0] = 1;
-  if (order == 1) return weights;
-  const bool even_order = order % 2 == 0;
-  const Extremal p{(even_order ? order : order + 1) / 2, even_order};
-  const double x = p.largestZero();
-  // Simpson's rule over 512 intervals is exact to 1e-12, since polynomials have at most degree 14.
-  constexpr int kIntervals = 512;
-  std::array<double, kMaxOrder> sums{};
-  for (int k = 0; k <= kIntervals; ++k) {
-    const double t = -1 + 2.0 * k / kIntervals;
-    const double root = std::abs(t - x) < 1e-6 ? (p(x + 1e-4) - p(x - 1e-4)) / 2e-4 : p(t) / (t - x);
-    const double kernel = root * root * (even_order ? 1 + t : 1);
-    const double weight = k == 0 || k == kIntervals ? 1 : k % 2 == 1 ? 4 : 2;
-    for (int l = 0; l < order; ++l) sums[static_cast<std::size_t>(l)] += weight * kernel * legendre(l, t);
-  }
-  for (std::size_t l = 1; l < static_cast<std::size_t>(order); ++l)
-    weights[l] = static_cast<float>(sums[l] / sums[0]);
-  return weights;
-}
-
 // Returns the blend a of Auto, which is 0 if no channel rings. Channels whose mean is not positive are
 // ignored, since no window can help them, and so are lights with coefficients that are not finite.
 float blendFor(const LightVector& light, const BandWeights& kernel) {
@@ -271,16 +214,22 @@ float blendFor(const LightVector& light, const BandWeights& kernel) {
 }  // namespace
 
 BandWeights positiveWeights(int order) {
-  static const auto kByOrder = [] {
-    std::array<BandWeights, kMaxOrder + 1> weights{};
-    for (int n = 1; n <= kMaxOrder; ++n) weights[static_cast<std::size_t>(n)] = integratedPositiveWeights(n);
-    return weights;
-  }();
+  // k_l is the integral of kernel and P_l over that of the kernel, by Simpson's rule.
+  constexpr std::array<BandWeights, kMaxOrder + 1> kByOrder = {
+      {{},
+       {1.0f},
+       {1.0f, 0.333333343f},
+       {1.0f, 0.577350259f, 0.200000003f},
+       {1.0f, 0.689897954f, 0.344948977f, 0.0935787186f},
+       {1.0f, 0.774596691f, 0.485714287f, 0.221313342f, 0.0634920672f},
+       {1.0f, 0.822824061f, 0.576114297f, 0.326164126f, 0.140392929f, 0.0356806293f},
+       {1.0f, 0.861136317f, 0.655407667f, 0.428389072f, 0.235437796f, 0.0983516797f, 0.0263565518f},
+       {1.0f, 0.8857916f, 0.709246159f, 0.504783869f, 0.315425426f, 0.16509001f, 0.0669896752f,
+        0.0166049823f}}};
   return kByOrder[static_cast<std::size_t>(order)];
 }
 
 BandWeights windowWeights(const LightVector& light, Window window) {
-  if (window == Window::Hann) return hannWeights(light.order);
   const BandWeights kernel = positiveWeights(light.order);
   const float blend = window == Window::Auto ? blendFor(light, kernel) : 0.0f;
   BandWeights weights{};

@@ -2,8 +2,6 @@
 // the picture shows dark rings. A window scales band l of the LIGHT by w_l <= 1 once per frame and never
 // changes transfer.
 //
-// Hann: w_l = (1 + cos(pi l / n)) / 2, whether the light rings or not. It blurs much.
-//
 // Auto: w_l = 1 - a + a k_l. The blend a in [0, 1] is the same for all channels, and is the smallest that
 // makes no channel negative in any direction, so lights that do not ring stay unchanged. A light that is
 // nowhere negative shades nothing negative behind any occluder: radiance is the integral of light times
@@ -21,7 +19,7 @@
 
 namespace lambent::sh {
 
-enum class Window { Off, Hann, Auto };
+enum class Window { Off, Auto };
 
 using BandWeights = std::array<float, kMaxOrder>;
 
@@ -53,11 +51,7 @@ class CachedWindow {
  private:
   LightVector made_from_{.order = 0};
   Window window_ = Window::Off;
-  BandWeights weights_ = [] {
-    BandWeights ones;
-    ones.fill(1.0f);
-    return ones;
-  }();
+  BandWeights weights_ = windowWeights({.order = kMaxOrder}, Window::Off);
 };
 
 }  // namespace lambent::sh

@@ -95,32 +95,21 @@ Texel besideCross(Texel texel, Texel face, int width, int height) {
   return showsDirection(ImageLayout::VerticalCross, found, width, height) ? found : edge;
 }
 
-bool fits(ImageLayout layout, const RgbImage& image) {
-  switch (layout) {
-    case ImageLayout::LatLong:
-      return true;
-    case ImageLayout::AngularMap:
-      return image.width == image.height;
-    case ImageLayout::VerticalCross:
-      return image.width % 3 == 0 && image.width / 3 * 4 == image.height;
-  }
-  return false;
-}
-
 }  // namespace
 
 Result<EnvironmentMap> loadEnvironmentMap(const EnvironmentMapLight& light) {
   Result<RgbImage> image = readLightImage(light.file);
   if (!image) return failAgain(std::move(image.error()));
   const int width = static_cast<int>(image->width), height = static_cast<int>(image->height);
-  const std::optional<ImageLayout> layout = light.layout ? light.layout : sh::layoutOfShape(width, height);
+  const std::optional<ImageLayout> of_shape = sh::layoutOfShape(width, height),
+                                   layout = light.layout ? light.layout : of_shape;
   const std::string shape = std::to_string(width) + " x " + std::to_string(height);
   if (!layout)
     return fail(
         light.file.string(),
         "its shape (" + shape + ") is neither lat-long (2:1), angular map (1:1) nor vertical cross (3:4)",
         "say what it is with --light-layout lat-long, or crop it to its layout");
-  if (!fits(*layout, *image))
+  if (layout != ImageLayout::LatLong && layout != of_shape)
     return fail(light.file.string(),
                 "its shape (" + shape + ") cannot be read as " + std::string(sh::name(*layout)),
                 "choose another --light-layout, or leave it out");
@@ -173,16 +162,12 @@ Result<DistantLights> loadDistantLights(
 }
 
 sh::LightVector DistantLights::lightVector() const {
-  return skyVector() + discVector(discs);
-}
-
-sh::LightVector DistantLights::skyVector() const {
   sh::LightVector light = sh::constantLight(sh::kMaxOrder, constant);
   for (const EnvironmentMap& environment_map : environment_maps)
     light +=
         sh::projectImage(sh::kMaxOrder, environment_map.layout, static_cast<int>(environment_map.image.width),
                          static_cast<int>(environment_map.image.height), environment_map.image.texels);
-  return light;
+  return light + discVector(discs);
 }
 
 sh::LightVector discVector(std::span<const Disc> discs) {

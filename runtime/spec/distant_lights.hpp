@@ -52,10 +52,9 @@ struct DistantLights {
   // Sentences about what is odd in files of environment maps, and what was made of it.
   std::vector<std::string> notices;
 
-  // Return bands 0..7, with environment maps projected texel by texel and discs and the constant in closed
+  // Returns bands 0..7, with environment maps projected texel by texel and discs and the constant in closed
   // form.
-  sh::LightVector lightVector() const;  // of all lights
-  sh::LightVector skyVector() const;    // of environment maps and the constant
+  sh::LightVector lightVector() const;
 };
 
 // Loads environment maps with `load` and passes its errors on.

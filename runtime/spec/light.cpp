@@ -23,88 +23,67 @@ constexpr std::string_view kForms =
     "give an environment map file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], "
     "sphere:X,Y,Z,RADIUS,R[,G,B] "
     "or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]";
-constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 to 1e15";
-constexpr std::string_view kSunForm =
-    "write sun:AZ,EL,ANGLE,R[,G,B] in degrees: elevation -90..90, angular radius above 0 up to 180, "
-    "radiances of 0 to 1e15";
-constexpr std::string_view kSphereForm =
-    "write sphere:X,Y,Z,RADIUS,R[,G,B] in metres: radius of 0 or more, radiances of 0 to 1e15";
-constexpr std::string_view kDiscForm =
-    "write disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B] in metres: it shines along NX,NY,NZ, which is not 0; radius "
-    "of 0 or more, radiances of 0 to 1e15";
+// A Kind is a light that is written as numbers, of which `place` come before its radiance.
+struct Kind {
+  std::string_view prefix;
+  std::size_t place;
+  std::string_view count, form;
+};
+constexpr std::array kKinds = {
+    Kind{"constant:", 0, "three", "write constant:R,G,B with radiances of 0 to 1e15"},
+    Kind{"sun:", 3, "four or six",
+         "write sun:AZ,EL,ANGLE,R[,G,B] in degrees: elevation -90..90, angular radius above 0 up to 180, "
+         "radiances of 0 to 1e15"},
+    Kind{"sphere:", 4, "five or seven",
+         "write sphere:X,Y,Z,RADIUS,R[,G,B] in metres: radius of 0 or more, radiances of 0 to 1e15"},
+    Kind{"disc:", 7, "eight or ten",
+         "write disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B] in metres: it shines along NX,NY,NZ, which is not 0; "
+         "radius of 0 or more, radiances of 0 to 1e15"}};
 
 tl::unexpected<Error> wrongLight(std::string_view word, std::string problem, std::string_view hint) {
   return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(hint));
 }
 
-// Parses one number for all channels, or three.
-std::optional<glm::vec3> parseRadiance(std::span<const float> values) {
-  if (values.size() != 1 && values.size() != 3) return std::nullopt;
-  if (std::ranges::any_of(values, [](float value) { return !(value >= 0.0f && value <= kMostRadiance); }))
-    return std::nullopt;
-  return values.size() == 1 ? glm::vec3(values[0]) : glm::vec3(values[0], values[1], values[2]);
-}
-
-Result<Light> parseConstant(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers(text);
-  if (!values) return wrongLight(word, "is not a list of numbers", kConstantForm);
-  if (values->size() != 3) return wrongLight(word, "needs three numbers", kConstantForm);
-  const auto colour = parseRadiance(*values);
-  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kConstantForm);
-  return ConstantLight{*colour};
-}
-
-Result<Light> parseSun(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers(text);
-  if (!values) return wrongLight(word, "is not a list of numbers", kSunForm);
-  if (values->size() != 4 && values->size() != 6)
-    return wrongLight(word, "needs four or six numbers", kSunForm);
-  const float azimuth = (*values)[0], elevation = (*values)[1], angle = (*values)[2];
-  if (std::abs(elevation) > 90.0f) return wrongLight(word, "has an elevation outside -90..90", kSunForm);
-  if (angle <= 0.0f || angle > 180.0f)
-    return wrongLight(word, "has an angular radius outside 0..180", kSunForm);
-  const auto colour = parseRadiance(std::span(*values).subspan(3));
-  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kSunForm);
-  return SunLight{azimuth, elevation, angle, *colour};
-}
-
-Result<Light> parseSphere(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers<double>(text);
-  if (!values) return wrongLight(word, "is not a list of numbers", kSphereForm);
-  if (values->size() != 5 && values->size() != 7)
-    return wrongLight(word, "needs five or seven numbers", kSphereForm);
-  const std::vector<float> v(values->begin(), values->end());
-  if (v[3] < 0.0f) return wrongLight(word, "has a negative radius", kSphereForm);
-  const auto colour = parseRadiance(std::span(v).subspan(4));
-  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kSphereForm);
-  return SphereLight{{(*values)[0], (*values)[1], (*values)[2]}, v[3], *colour};
-}
-
-Result<Light> parseDisc(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers<double>(text);
-  if (!values) return wrongLight(word, "is not a list of numbers", kDiscForm);
-  if (values->size() != 8 && values->size() != 10)
-    return wrongLight(word, "needs eight or ten numbers", kDiscForm);
-  const std::vector<float> v(values->begin(), values->end());
+// Makes the light of a kind from its numbers. Returns what is wrong with them otherwise.
+tl::expected<Light, const char*> lightOf(std::size_t kind, const glm::dvec3& position,
+                                         std::span<const float> v, const glm::vec3& radiance) {
+  if (kind == 0) return ConstantLight{radiance};
+  if (kind == 1) {
+    if (std::abs(v[1]) > 90.0f) return tl::unexpected<const char*>("has an elevation outside -90..90");
+    if (v[2] <= 0.0f || v[2] > 180.0f)
+      return tl::unexpected<const char*>("has an angular radius outside 0..180");
+    return SunLight{v[0], v[1], v[2], radiance};
+  }
+  const float radius = v.back();
+  if (radius < 0.0f) return tl::unexpected<const char*>("has a negative radius");
+  if (kind == 2) return SphereLight{position, radius, radiance};
   // In double precision squares of floats neither overflow nor underflow.
   const glm::dvec3 normal(v[3], v[4], v[5]);
-  if (!(glm::length(normal) > 0.0)) return wrongLight(word, "has a normal of length 0", kDiscForm);
-  if (v[6] < 0.0f) return wrongLight(word, "has a negative radius", kDiscForm);
-  const auto colour = parseRadiance(std::span(v).subspan(7));
-  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kDiscForm);
-  return DiscLight{
-      {(*values)[0], (*values)[1], (*values)[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
+  if (!(glm::length(normal) > 0.0)) return tl::unexpected<const char*>("has a normal of length 0");
+  return DiscLight{position, glm::vec3(glm::normalize(normal)), radius, radiance};
 }
 
 }  // namespace
 
 Result<Light> parseLight(std::string_view word) {
-  constexpr std::string_view kConstant = "constant:", kSun = "sun:", kSphere = "sphere:", kDisc = "disc:";
   if (word.empty()) return wrongLight(word, "is empty", kForms);
-  if (word.starts_with(kConstant)) return parseConstant(word, word.substr(kConstant.size()));
-  if (word.starts_with(kSun)) return parseSun(word, word.substr(kSun.size()));
-  if (word.starts_with(kSphere)) return parseSphere(word, word.substr(kSphere.size()));
-  if (word.starts_with(kDisc)) return parseDisc(word, word.substr(kDisc.size()));
+  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+    const auto& [prefix, place, count, form] = kKinds[kind];
+    if (!word.starts_with(prefix)) continue;
+    const auto exact = parseNumbers<double>(word.substr(prefix.size()));
+    if (!exact) return wrongLight(word, "is not a list of numbers", form);
+    const std::vector<float> v(exact->begin(), exact->end());
+    const bool grey = v.size() == place + 1 && place > 0;  // one number for all channels, or three
+    if (!grey && v.size() != place + 3)
+      return wrongLight(word, "needs " + std::string(count) + " numbers", form);
+    const std::span<const float> colour = std::span(v).subspan(place);
+    if (std::ranges::any_of(colour, [](float value) { return !(value >= 0.0f && value <= kMostRadiance); }))
+      return wrongLight(word, "has a radiance outside 0..1e15", form);
+    const auto light = lightOf(kind, {(*exact)[0], (*exact)[1], (*exact)[2]}, std::span(v).first(place),
+                               grey ? glm::vec3(colour[0]) : glm::vec3(colour[0], colour[1], colour[2]));
+    if (!light) return wrongLight(word, light.error(), form);
+    return *light;
+  }
   const std::filesystem::path file(word);
   const std::string extension = lowerCase(file.extension().string());
   if (extension != ".hdr" && extension != ".exr")

@@ -1,6 +1,7 @@
 // Reads and writes PNG with stb, whose code is compiled only here.
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,42 +24,15 @@ namespace lambent::spec {
 
 namespace {
 
-void appendNumber(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
-  for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
-}
-
-// Returns the cyclic redundancy check of ISO 3309, which ends each chunk. Chunks here have a few bytes.
-std::uint32_t checkOf(std::span<const std::uint8_t> bytes) {
-  std::uint32_t rest = ~0u;
-  for (const std::uint8_t byte : bytes) {
-    rest ^= byte;
-    for (int bit = 0; bit < 8; ++bit) rest = (rest >> 1) ^ ((rest & 1u) != 0 ? 0xEDB88320u : 0u);
-  }
-  return ~rest;
-}
-
-void appendChunk(std::vector<std::uint8_t>& bytes, const char (&name)[5],
-                 std::span<const std::uint8_t> content) {
-  appendNumber(bytes, static_cast<std::uint32_t>(content.size()));
-  const std::size_t checked_from = bytes.size();
-  bytes.insert(bytes.end(), name, name + 4);
-  bytes.insert(bytes.end(), content.begin(), content.end());
-  appendNumber(bytes, checkOf(std::span(bytes).subspan(checked_from)));
-}
-
-// Returns the chunks that say that values are sRGB: "sRGB", and for programs that do not know it the gamma
-// and the chromaticities that the PNG specification gives for it (11.3.2.5).
-std::vector<std::uint8_t> srgbChunks() {
-  constexpr std::uint8_t kPerceptual = 0;
-  std::vector<std::uint8_t> bytes, gamma, chromaticities;
-  appendNumber(gamma, 45455);
-  for (const std::uint32_t value : {31270u, 32900u, 64000u, 33000u, 30000u, 60000u, 15000u, 6000u})
-    appendNumber(chromaticities, value);
-  appendChunk(bytes, "sRGB", std::span(&kPerceptual, 1));
-  appendChunk(bytes, "gAMA", gamma);
-  appendChunk(bytes, "cHRM", chromaticities);
-  return bytes;
-}
+// The chunks that say that values are sRGB: "sRGB", and for programs that do not know it the gamma and the
+// chromaticities that the PNG specification gives for it (11.3.2.5). Each has its length, name, content and
+// check (CRC-32).
+constexpr std::uint8_t kSrgbChunks[] = {
+    0x00, 0x00, 0x00, 0x01, 0x73, 0x52, 0x47, 0x42, 0x00, 0xae, 0xce, 0x1c, 0xe9, 0x00, 0x00,
+    0x00, 0x04, 0x67, 0x41, 0x4d, 0x41, 0x00, 0x00, 0xb1, 0x8f, 0x0b, 0xfc, 0x61, 0x05, 0x00,
+    0x00, 0x00, 0x20, 0x63, 0x48, 0x52, 0x4d, 0x00, 0x00, 0x7a, 0x26, 0x00, 0x00, 0x80, 0x84,
+    0x00, 0x00, 0xfa, 0x00, 0x00, 0x00, 0x80, 0xe8, 0x00, 0x00, 0x75, 0x30, 0x00, 0x00, 0xea,
+    0x60, 0x00, 0x00, 0x3a, 0x98, 0x00, 0x00, 0x17, 0x70, 0x9c, 0xba, 0x51, 0x3c};
 
 }  // namespace
 
@@ -102,8 +76,7 @@ Result<void> writePng(const std::filesystem::path& path, const Rgba8Image& image
   std::vector<std::uint8_t> bytes = encodePng(image);
   if (bytes.empty()) return fail(path.string(), "cannot be coded as PNG", "make the picture smaller");
   constexpr std::ptrdiff_t kHeaderEnd = 8 + 4 + 4 + 13 + 4;  // the signature and the chunk IHDR
-  const std::vector<std::uint8_t> chunks = srgbChunks();
-  bytes.insert(bytes.begin() + kHeaderEnd, chunks.begin(), chunks.end());
+  bytes.insert(bytes.begin() + kHeaderEnd, std::begin(kSrgbChunks), std::end(kSrgbChunks));
   return writeFile(path, std::as_bytes(std::span(bytes)));
 }
 

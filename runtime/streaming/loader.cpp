@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <exception>
+#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -55,12 +56,14 @@ const bundle::CellTransfer& transferOf(const bundle::Description& description, c
   return cellOf(description, at).transfers[at.transfer.value];
 }
 
-template <class T>
-std::size_t sizeInBytes(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
+template <class... T>
+std::size_t bytesIn(const std::vector<T>&... lists) {
+  return (... + (lists.size() * sizeof(T)));
 }
 
-using Loaded = std::optional<Result<Ready>>;
+// Reserves the bytes that an item will need in memory. Returns false if the item is not wanted any more.
+using Reserve = std::function<bool(std::size_t)>;
+using Loaded = std::optional<Result<Ready>>;  // nothing if `reserve` returned false
 
 class Load {
  public:
@@ -73,19 +76,17 @@ class Load {
     constexpr std::size_t kVertexBytes = sizeof(float) * (3 + 3 + 2 + 2 + 4 + 4);
     if (!reserve_(primitive.vertex_count * kVertexBytes + primitive.index_count * sizeof(std::uint32_t)))
       return {};
-    auto mesh = reader_.readMesh(work.mesh, work.primitive);
-    if (!mesh) return failAgain(mesh.error());
-    bundle::weighNormals(*mesh);
-    const float mean_edge = meanEdge(*mesh);
-    return MeshChunk{work.mesh, work.primitive, std::move(*mesh), mean_edge};
+    return made(reader_.readMesh(work.mesh, work.primitive), [&](bundle::MeshData mesh) {
+      bundle::weighNormals(mesh);
+      const float mean_edge = meanEdge(mesh);
+      return MeshChunk{work, std::move(mesh), mean_edge};
+    });
   }
 
   Loaded operator()(const WeightsRequest& work) const {
     // An entry has six bytes in the file and eight in memory.
     if (!reserve_(description_.payloads[description_.draws[work.draw].rows].raw_length * 2)) return {};
-    auto rows = reader_.readRows(work.draw);
-    if (!rows) return failAgain(rows.error());
-    return WeightsChunk{work.draw, std::move(*rows)};
+    return chunkOf<WeightsChunk>(reader_.readRows(work.draw), work);
   }
 
   Loaded operator()(const ImageRequest& work) const {
@@ -96,14 +97,14 @@ class Load {
     const auto size = imageSize(*file, subject);
     if (!size) return failAgain(size.error());
     if (!reserve_(size->rgbaBytes())) return {};
-    auto rgba = decodeRgba(*file, subject);
-    if (!rgba) return failAgain(rgba.error());
-    if (work.level == 0) return ImageChunk{work.image, size->width, size->height, std::move(*rgba)};
-    const ImageUse use = imageUses(description_)[work.image];
-    const ImageSize small = sizeAt(*size, work.level);
-    ImageChunk ready{work.image, small.width, small.height, shrink(*rgba, *size, work.level, use.color)};
-    if (use.color && use.linear) ready.linear = shrink(*rgba, *size, work.level, /*color=*/false);
-    return ready;
+    return made(decodeRgba(*file, subject), [&](std::vector<std::uint8_t> rgba) {
+      if (work.level == 0) return ImageChunk{work, size->width, size->height, std::move(rgba)};
+      const ImageUse use = imageUses(description_)[work.image];
+      const ImageSize small = sizeAt(*size, work.level);
+      ImageChunk ready{work, small.width, small.height, shrink(rgba, *size, work.level, use.color)};
+      if (use.color && use.linear) ready.linear = shrink(rgba, *size, work.level, /*color=*/false);
+      return ready;
+    });
   }
 
   Loaded operator()(const CodebookRequest& work) const {
@@ -111,75 +112,79 @@ class Load {
     const std::uint32_t samples = cellOf(description_, work).sample_count;
     // The codebook as on the GPU and the cluster of each sample are needed.
     if (!reserve_(codebookBytesOnGpu(transfer, samples) + 4 * std::size_t{samples})) return {};
-    auto found = reader_.readCodebook(work.group, work.cell, work.transfer);
-    if (!found) return failAgain(found.error());
-    std::vector<std::uint32_t> positions = transfer::positionsOf(found->cluster_of, transfer.clusters);
-    for (std::uint32_t& position : positions) position |= found->cluster_of[position] << 16;
-    return CodebookChunk{work.group, work.cell, work.transfer, std::move(found->codebook),
-                         std::move(positions)};
+    return made(reader_.readCodebook(work.group, work.cell, work.transfer), [&](bundle::CellCodebook found) {
+      std::vector<std::uint32_t> positions = transfer::positionsOf(found.cluster_of, transfer.clusters);
+      for (std::uint32_t& position : positions) position |= found.cluster_of[position] << 16;
+      return CodebookChunk{work, std::move(found.codebook), std::move(positions)};
+    });
   }
 
   Loaded operator()(const PlaneRequest& work) const {
     const bundle::WeightPlane& plane = transferOf(description_, work).planes[work.plane.value];
     if (!reserve_(5 * std::size_t{plane.count})) return {};
-    const auto codes = reader_.readPlane(work.group, work.cell, work.transfer, work.plane);
-    if (!codes) return failAgain(codes.error());
-    PlaneChunk ready{work.group, work.cell, work.transfer, work.plane, {}};
-    ready.codes.reserve(codes->size() * plane.bits / 8);
-    for (const std::uint32_t code : *codes) {
-      ready.codes.push_back(static_cast<std::byte>(code & 0xff));
-      if (plane.bits == 16) ready.codes.push_back(static_cast<std::byte>(code >> 8));
-    }
-    return ready;
+    auto codes = reader_.readPlane(work.group, work.cell, work.transfer, work.plane);
+    return made(std::move(codes), [&](const std::vector<std::uint32_t>& numbers) {
+      PlaneChunk ready{work, {}};
+      ready.codes.reserve(numbers.size() * plane.bits / 8);
+      for (const std::uint32_t code : numbers) {
+        ready.codes.push_back(static_cast<std::byte>(code & 0xff));
+        if (plane.bits == 16) ready.codes.push_back(static_cast<std::byte>(code >> 8));
+      }
+      return ready;
+    });
   }
 
   Loaded operator()(const LightWeightsRequest& work) const {
-    const std::size_t bytes = sizeof(transfer::LightWeights) * cellOf(description_, work).sample_count;
-    if (!reserve_(2 * bytes)) return {};
-    auto weights = reader_.readLightWeights(work.group, work.cell);
-    if (!weights) return failAgain(weights.error());
-    return LightWeightsChunk{work.group, work.cell, std::move(*weights)};
+    if (!reserve_(2 * sizeof(transfer::LightWeights) * cellOf(description_, work).sample_count)) return {};
+    return chunkOf<LightWeightsChunk>(reader_.readLightWeights(work.group, work.cell), work);
   }
 
   Loaded operator()(const ProxyRequest& work) const {
     const auto payload = static_cast<std::size_t>(description_.groups[work.group.value].proxy);
     if (!reserve_(3 * description_.payloads[payload].raw_length)) return {};
-    auto proxy = reader_.readProxy(work.group);
-    if (!proxy) return failAgain(proxy.error());
-    return ProxyChunk{work.group, std::move(*proxy)};
+    return chunkOf<ProxyChunk>(reader_.readProxy(work.group), work);
   }
 
   Loaded operator()(const DensityRequest& work) const {
     const bundle::VolumeGrid& grid = *description_.groups[work.group.value].volume;
     if (!reserve_(2 * description_.payloads[grid.density].raw_length)) return {};
-    auto codes = reader_.readPayload(grid.density);
-    if (!codes) return failAgain(codes.error());
-    std::vector<float> maxima = blockMaxima(*codes, grid.bits, grid.size);
-    return DensityChunk{work.group, std::move(*codes), std::move(maxima)};
+    return made(reader_.readPayload(grid.density), [&](std::vector<std::byte> codes) {
+      std::vector<float> maxima = blockMaxima(codes, grid.bits, grid.size);
+      return DensityChunk{work, std::move(codes), std::move(maxima)};
+    });
   }
 
   Loaded operator()(const VoxelsRequest& work) const {
     const bundle::VolumeGrid& grid = *description_.groups[work.group.value].volume;
     if (!reserve_(3 * description_.payloads[grid.voxels].raw_length)) return {};
-    const auto bytes = reader_.readPayload(grid.voxels);
-    if (!bytes) return failAgain(bytes.error());
-    auto voxels =
-        bundle::decodeVoxels(*bytes, grid.transfer_size, named(fmt::format("group {}", work.group.value)));
-    if (!voxels) return failAgain(voxels.error());
-    return VoxelsChunk{work.group, std::move(*voxels)};
+    const auto decode = [&](const std::vector<std::byte>& bytes) {
+      return bundle::decodeVoxels(bytes, grid.transfer_size,
+                                  named(fmt::format("group {}", work.group.value)));
+    };
+    return chunkOf<VoxelsChunk>(reader_.readPayload(grid.voxels).and_then(decode), work);
   }
 
   Loaded operator()(const BrdfRequest& work) const {
-    const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
     // The payload, the table and the texels have similar sizes.
-    if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
-    auto table = reader_.readBrdfTable(work.table);
-    if (!table) return failAgain(table.error());
-    BrdfTexels texels = packBrdf(*table);
-    return BrdfChunk{work.table, std::move(*table), std::move(texels)};
+    if (!reserve_(8 * description_.payloads[description_.brdf_tables[work.table].payload].raw_length))
+      return {};
+    return made(reader_.readBrdfTable(work.table), [&](bundle::BrdfTable table) {
+      BrdfTexels texels = packBrdf(table);
+      return BrdfChunk{work, std::move(table), std::move(texels)};
+    });
   }
 
  private:
+  // Makes an item of what was read.
+  template <class T, class Make>
+  static Loaded made(Result<T> read, const Make& make) {
+    if (!read) return failAgain(std::move(read.error()));
+    return Ready(make(std::move(*read)));
+  }
+  template <class Chunk, class T, class Request>
+  static Loaded chunkOf(Result<T> read, const Request& work) {
+    return made(std::move(read), [&](T value) { return Chunk{work, std::move(value)}; });
+  }
   // Returns "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
   static Result<Ready> failAgain(Error error) { return lambent::failAgain(std::move(error)); }
@@ -226,7 +231,7 @@ std::vector<Work> requestsOf(const bundle::Description& d) {
         for (std::uint32_t p = 0; p < parts[t].planes.size(); ++p) {
           priority = std::max(priority, d.payloads[parts[t].planes[p].payload].priority);
           transfer.push_back(
-              {priority, PlaneRequest{group, cell, bundle::TransferIndex{t}, bundle::PlaneIndex{p}}});
+              {priority, PlaneRequest{{group, cell, bundle::TransferIndex{t}}, bundle::PlaneIndex{p}}});
         }
       }
     }
@@ -235,39 +240,30 @@ std::vector<Work> requestsOf(const bundle::Description& d) {
   return list;
 }
 
-std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work, const Reserve& reserve) {
-  return std::visit(Load(reader, reserve), work);
-}
-
 std::size_t bytesOf(const Ready& ready) {
   return std::visit(
-      Overloaded{
-          [](const MeshChunk& item) {
-            return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
-                   sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
-                   sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
-                   sizeInBytes(item.data.indices);
-          },
-          [](const ImageChunk& item) { return sizeInBytes(item.rgba) + sizeInBytes(item.linear); },
-          [](const WeightsChunk& item) {
-            return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
-                   sizeInBytes(item.rows.weights);
-          },
-          [](const CodebookChunk& item) {
-            return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
-                   sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
-          },
-          [](const PlaneChunk& item) { return sizeInBytes(item.codes); },
-          [](const LightWeightsChunk& item) { return sizeInBytes(item.samples); },
-          [](const ProxyChunk& item) {
-            return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
-                   sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
-          },
-          [](const BrdfChunk& item) {
-            return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
-          },
-          [](const DensityChunk& item) { return sizeInBytes(item.codes) + sizeInBytes(item.block_maxima); },
-          [](const VoxelsChunk& item) { return sizeInBytes(item.voxels); }},
+      Overloaded{[](const MeshChunk& item) {
+                   const bundle::MeshData& mesh = item.data;
+                   return bytesIn(mesh.positions, mesh.normals, mesh.texcoords0, mesh.texcoords1, mesh.colors,
+                                  mesh.tangents, mesh.indices);
+                 },
+                 [](const ImageChunk& item) { return bytesIn(item.rgba, item.linear); },
+                 [](const WeightsChunk& item) {
+                   return bytesIn(item.rows.offsets, item.rows.samples, item.rows.weights);
+                 },
+                 [](const CodebookChunk& item) {
+                   const transfer::Codebook& codebook = item.codebook;
+                   return bytesIn(codebook.axis_counts, codebook.axes, codebook.vectors, item.positions);
+                 },
+                 [](const PlaneChunk& item) { return bytesIn(item.codes); },
+                 [](const LightWeightsChunk& item) { return bytesIn(item.samples); },
+                 [](const ProxyChunk& item) {
+                   const bundle::CaptureProxy& proxy = item.proxy;
+                   return bytesIn(proxy.positions, proxy.triangles, proxy.entries, proxy.levels);
+                 },
+                 [](const BrdfChunk& item) { return bytesIn(item.data.values, item.texels.values); },
+                 [](const DensityChunk& item) { return bytesIn(item.codes, item.block_maxima); },
+                 [](const VoxelsChunk& item) { return bytesIn(item.voxels); }},
       ready);
 }
 
@@ -381,7 +377,8 @@ void Loader::runWorker() {
 std::optional<Result<Ready>> Loader::loadOne(std::size_t at) {
   const std::string& path = reader_->path().string();
   try {
-    return load(*reader_, work_[at], [&](std::size_t bytes) { return reserve(at, bytes); });
+    const Reserve room = [&](std::size_t bytes) { return reserve(at, bytes); };
+    return std::visit(Load(*reader_, room), work_[at]);
   } catch (const std::bad_alloc&) {
     return fail(path, "does not fit into memory", "close other programs or bake the scene at lower quality");
   } catch (const std::exception& exception) {

@@ -8,7 +8,6 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -24,21 +23,25 @@
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/streaming/textures.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::streaming {
 
-// These are the items that the loader produces: parts of a bundle that are read, checked and decoded, which
-// residency.hpp puts on the GPU. Errors name the bundle file and the item.
-struct MeshChunk {
+// A request names an item of a bundle. Its chunk is the item as the loader produces it: read, checked and
+// decoded, for residency.hpp to put on the GPU. Errors name the bundle file and the item.
+struct MeshRequest {
   std::uint32_t mesh = 0, primitive = 0;
+};
+struct MeshChunk : MeshRequest {
   bundle::MeshData data;
   float mean_edge = 0.0f;  // mean length of the triangles' edges, in mesh space
 };
 
-// Holds an image from the finest level that is needed.
-struct ImageChunk {
+struct ImageRequest {
   std::uint32_t image = 0;
+  std::uint32_t level = 0;  // finest mip level that is needed
+};
+struct ImageChunk : ImageRequest {
   std::uint32_t width = 0, height = 0;  // size of that level
   std::vector<std::uint8_t> rgba;       // row 0 is at the top; colours are sRGB-coded
   // The level as linear numbers, if the image serves as both and the averages of numbers differ from those of
@@ -46,109 +49,78 @@ struct ImageChunk {
   std::vector<std::uint8_t> linear{};
 };
 
-struct WeightsChunk {
-  std::uint32_t draw = 0;
-  transfer::VertexWeights rows;
-};
-
-struct CodebookChunk {
-  bundle::GroupIndex group;
-  bundle::CellIndex cell;
-  bundle::TransferIndex transfer;
-  transfer::Codebook codebook;
-  std::vector<std::uint32_t> positions;  // sample of the cell | cluster << 16, in the order of the codes
-};
-
-struct PlaneChunk {
-  bundle::GroupIndex group;
-  bundle::CellIndex cell;
-  bundle::TransferIndex transfer;
-  bundle::PlaneIndex plane;
-  std::vector<std::byte> codes;  // 8 or 16 bits per position, little endian, as the GPU reads them
-};
-
-struct LightWeightsChunk {
-  bundle::GroupIndex group;
-  bundle::CellIndex cell;
-  std::vector<transfer::LightWeights> samples;
-};
-
-struct ProxyChunk {
-  bundle::GroupIndex group;
-  bundle::CaptureProxy proxy;
-};
-
-struct BrdfChunk {
-  std::uint32_t table = 0;  // index into Description::brdf_tables
-  bundle::BrdfTable data;
-  BrdfTexels texels;
-};
-
-struct DensityChunk {
-  bundle::GroupIndex group;
-  std::vector<std::byte> codes;     // VolumeGrid::bits per voxel, little endian
-  std::vector<float> block_maxima;  // see blockMaxima()
-};
-
-struct VoxelsChunk {
-  bundle::GroupIndex group;
-  std::vector<std::uint32_t> voxels;  // voxel of the transfer grid for each sample of the volume
-};
-
-using Ready = std::variant<MeshChunk, ImageChunk, WeightsChunk, CodebookChunk, PlaneChunk, LightWeightsChunk,
-                           ProxyChunk, BrdfChunk, DensityChunk, VoxelsChunk>;
-
-struct MeshRequest {
-  std::uint32_t mesh = 0, primitive = 0;
-};
 struct WeightsRequest {
   std::uint32_t draw = 0;
 };
-struct ImageRequest {
-  std::uint32_t image = 0;
-  std::uint32_t level = 0;  // finest mip level that is needed
+struct WeightsChunk : WeightsRequest {
+  transfer::VertexWeights rows;
 };
+
 struct CodebookRequest {
   bundle::GroupIndex group;
   bundle::CellIndex cell;
   bundle::TransferIndex transfer;
 };
-struct PlaneRequest {
-  bundle::GroupIndex group;
-  bundle::CellIndex cell;
-  bundle::TransferIndex transfer;
+struct CodebookChunk : CodebookRequest {
+  transfer::Codebook codebook;
+  std::vector<std::uint32_t> positions;  // sample of the cell | cluster << 16, in the order of the codes
+};
+
+struct PlaneRequest : CodebookRequest {
   bundle::PlaneIndex plane;
 };
+struct PlaneChunk : PlaneRequest {
+  std::vector<std::byte> codes;  // 8 or 16 bits per position, little endian, as the GPU reads them
+};
+
 struct LightWeightsRequest {
   bundle::GroupIndex group;
   bundle::CellIndex cell;
 };
+struct LightWeightsChunk : LightWeightsRequest {
+  std::vector<transfer::LightWeights> samples;
+};
+
 struct ProxyRequest {
   bundle::GroupIndex group;
 };
-struct BrdfRequest {
-  std::uint32_t table = 0;
+struct ProxyChunk : ProxyRequest {
+  bundle::CaptureProxy proxy;
 };
+
+struct BrdfRequest {
+  std::uint32_t table = 0;  // index into Description::brdf_tables
+};
+struct BrdfChunk : BrdfRequest {
+  bundle::BrdfTable data;
+  BrdfTexels texels;
+};
+
 struct DensityRequest {
   bundle::GroupIndex group;
 };
+struct DensityChunk : DensityRequest {
+  std::vector<std::byte> codes;     // VolumeGrid::bits per voxel, little endian
+  std::vector<float> block_maxima;  // see blockMaxima()
+};
+
 struct VoxelsRequest {
   bundle::GroupIndex group;
 };
+struct VoxelsChunk : VoxelsRequest {
+  std::vector<std::uint32_t> voxels;  // voxel of the transfer grid for each sample of the volume
+};
+
 using Work = std::variant<MeshRequest, WeightsRequest, ImageRequest, CodebookRequest, PlaneRequest,
                           LightWeightsRequest, ProxyRequest, BrdfRequest, DensityRequest, VoxelsRequest>;
+using Ready = std::variant<MeshChunk, ImageChunk, WeightsChunk, CodebookChunk, PlaneChunk, LightWeightsChunk,
+                           ProxyChunk, BrdfChunk, DensityChunk, VoxelsChunk>;
 
 // Returns all items of a bundle in the order of loading: meshes, rows, BRDF tables (glossy surfaces need
 // these three), grids of volumes, images, and then light weights, proxies, codebooks and planes. Items of a
 // kind are sorted by the priority of their payload and then by their order in the description. A codebook
 // always comes before its planes, which keep their order.
 std::vector<Work> requestsOf(const bundle::Description& description);
-
-// Reserves the bytes that an item will need in memory. Returns false if the item is not wanted any more.
-using Reserve = std::function<bool(std::size_t)>;
-
-// Loads an item. Returns nothing if `reserve` returned false.
-std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work, const Reserve& reserve);
 
 // Returns the memory that a loaded item uses, which is about what its upload takes.
 std::size_t bytesOf(const Ready& ready);

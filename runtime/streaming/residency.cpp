@@ -34,16 +34,12 @@ std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
   return word;
 }
 
-std::uint64_t planeBytesOf(const ResidentPlane& plane) {
-  return planeBytes({.payload = 0, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
-}
-
 // Returns the size of a cell with all planes.
 std::uint64_t wholeBytes(ResidentCell cell) {
   constexpr std::uint64_t kBlock = gpu::Arena::kAlignment;
   std::uint64_t bytes = (4ull * layOut(cell, 0) + kBlock - 1) / kBlock * kBlock;
   for (const ResidentTransfer& transfer : cell.transfers)
-    for (const ResidentPlane& plane : transfer.planes) bytes += planeBytesOf(plane);
+    for (const ResidentPlane& plane : transfer.planes) bytes += planeBytes(plane);
   return bytes;
 }
 
@@ -131,13 +127,6 @@ void Residency::structureChanged() {
   ++version_;
   ++structure_version_;
   ++proxies_version_;
-}
-
-Result<std::uint32_t> Residency::add(const bundle::Description& description) {
-  const auto empty = std::ranges::find(tables_.bundles, false, &ResidentBundle::present);
-  const auto slot = static_cast<std::uint32_t>(empty - tables_.bundles.begin());
-  if (const Result<void> added = add(description, slot); !added) return failAgain(added.error());
-  return slot;
 }
 
 Result<void> Residency::add(const bundle::Description& description, std::uint32_t slot) {
@@ -254,9 +243,7 @@ Result<void> Residency::moveCell(ResidentCell& cell) {
   layOut(cell, cell.block.word());
   for (ResidentTransfer& transfer : cell.transfers)
     for (ResidentPlane& plane : transfer.planes) {
-      if (!plane.block) continue;
-      move(plane.block, *transfer_.allocateIn(cell.block.page, planeBytesOf(plane)));
-      plane.word = plane.block.word();
+      if (plane.block) move(plane.block, *transfer_.allocateIn(cell.block.page, planeBytes(plane)));
     }
   return {};
 }
@@ -268,13 +255,12 @@ Result<void> Residency::put(At at, const PlaneChunk& item) {
   // The loader delivers the planes of a cell in order, so the loaded planes are always the first ones.
   assert(item.plane.value == transfer.planes_resident);
   ResidentPlane& plane = transfer.planes[item.plane.value];
-  std::optional<gpu::Allocation> block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
+  std::optional<gpu::Allocation> block = transfer_.allocateIn(cell.block.page, planeBytes(plane));
   if (!block) {  // other cells have filled the page
     if (Result<void> moved = moveCell(cell); !moved) return moved;
-    block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
+    block = transfer_.allocateIn(cell.block.page, planeBytes(plane));
   }
   plane.block = *block;
-  plane.word = block->word();
   transfer_.write(plane.block, 0, item.codes);
   transfer.planes_resident = item.plane.value + 1;
   cell.version = version_;

@@ -36,8 +36,6 @@ class Residency {
     std::uint32_t index = 0;  // the slot, or the number of the staged bundle
   };
 
-  // Adds a bundle in the first empty slot and returns the slot.
-  Result<std::uint32_t> add(const bundle::Description& description);
   // Adds a bundle in this slot, which must be empty.
   Result<void> add(const bundle::Description& description, std::uint32_t slot);
   // Releases all memory of the bundle. The slot is empty until the next add(); other slots do not change.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <span>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -111,9 +113,7 @@ ResidentTransfer describe(const bundle::CellTransfer& transfer) {
   resident.shape = transfer.shape;
   resident.clusters = transfer.clusters;
   resident.axes = transfer.axes;
-  for (const bundle::WeightPlane& plane : transfer.planes)
-    resident.planes.push_back(
-        {.block = {}, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
+  for (const bundle::WeightPlane& plane : transfer.planes) resident.planes.push_back({plane});
   return resident;
 }
 
@@ -155,40 +155,30 @@ ResidentVolume describeVolume(const bundle::Group& group) {
   return volume;
 }
 
-TableSizes sizesOf(const ResidentTables& tables) {
-  const auto size = [](const auto& table) { return static_cast<std::uint32_t>(table.size()); };
-  return {size(tables.meshes), size(tables.groups), size(tables.cells), size(tables.draws),
-          size(tables.volumes)};
-}
-
-TableSizes sum(const TableSizes& a, const TableSizes& b) {
-  return {a.meshes + b.meshes, a.groups + b.groups, a.cells + b.cells, a.draws + b.draws,
-          a.volumes + b.volumes};
-}
-
-// Returns the negative sizes. Numbers wrap around, so adding these subtracts.
-TableSizes negative(const TableSizes& a) {
-  return {0u - a.meshes, 0u - a.groups, 0u - a.cells, 0u - a.draws, 0u - a.volumes};
-}
-
-// Adjusts indices in the entries from `begin` on after entries of the tables have moved.
-void shift(ResidentTables& tables, const TableSizes& begin, const TableSizes& by) {
-  for (std::size_t i = begin.groups; i < tables.groups.size(); ++i) {
-    ResidentGroup& group = tables.groups[i];
-    group.first_cell += by.cells;
-    if (group.volume >= 0) group.volume += static_cast<std::int32_t>(by.volumes);
+// Gives bundles their ranges, after entries were inserted or removed, and adjusts the indices in entries.
+void renumber(ResidentTables& tables) {
+  TableSizes next;
+  for (std::uint32_t slot = 0; slot < tables.bundles.size(); ++slot) {
+    ResidentBundle& bundle = tables.bundles[slot];
+    const TableSizes before = std::exchange(bundle.first, next), &count = bundle.count;
+    // Numbers wrap around, so that entries may also move towards the front.
+    const std::uint32_t groups = next.groups - before.groups, meshes = next.meshes - before.meshes;
+    for (ResidentGroup& group : std::span(tables.groups).subspan(next.groups, count.groups)) {
+      group.bundle = slot;
+      group.first_cell += next.cells - before.cells;
+      if (group.volume >= 0) group.volume += static_cast<std::int32_t>(next.volumes - before.volumes);
+    }
+    for (ResidentCell& cell : std::span(tables.cells).subspan(next.cells, count.cells)) cell.group += groups;
+    for (ResidentVolume& volume : std::span(tables.volumes).subspan(next.volumes, count.volumes))
+      volume.group += groups;
+    for (ResidentDraw& draw : std::span(tables.draws).subspan(next.draws, count.draws)) {
+      draw.bundle = slot;
+      draw.group += groups;
+      draw.mesh += meshes;
+    }
+    next = {next.meshes + count.meshes, next.groups + count.groups, next.cells + count.cells,
+            next.draws + count.draws, next.volumes + count.volumes};
   }
-  for (std::size_t i = begin.cells; i < tables.cells.size(); ++i) tables.cells[i].group += by.groups;
-  for (std::size_t i = begin.volumes; i < tables.volumes.size(); ++i) tables.volumes[i].group += by.groups;
-  for (std::size_t i = begin.draws; i < tables.draws.size(); ++i) {
-    tables.draws[i].group += by.groups;
-    tables.draws[i].mesh += by.meshes;
-  }
-}
-
-void setSlot(ResidentTables& one, std::uint32_t slot) {
-  for (ResidentGroup& group : one.groups) group.bundle = slot;
-  for (ResidentDraw& draw : one.draws) draw.bundle = slot;
 }
 
 template <class Entry>
@@ -288,50 +278,39 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     made.group_from_mesh_normal = (draw.back ? -1.0f : 1.0f) * normalMatrix(made.group_from_mesh);
     made.version = version;
   }
-  bundle.count = sizesOf(tables);
+  const auto size = [](const auto& table) { return static_cast<std::uint32_t>(table.size()); };
+  bundle.count = {size(tables.meshes), size(tables.groups), size(tables.cells), size(tables.draws),
+                  size(tables.volumes)};
   tables.bundles.push_back(std::move(bundle));
   return tables;
 }
 
 void insert(ResidentTables& tables, std::uint32_t slot, ResidentTables one) {
   assert(one.bundles.size() == 1);
-  while (tables.bundles.size() <= slot) {
-    const TableSizes end = sizesOf(tables);
-    tables.bundles.emplace_back().first = end;
-  }
+  if (tables.bundles.size() <= slot) tables.bundles.resize(slot + 1u);
+  renumber(tables);
   assert(!tables.bundles[slot].present);
-  const TableSizes at = tables.bundles[slot].first, count = one.bundles.front().count;
-  setSlot(one, slot);
-  shift(one, {}, at);
-  shift(tables, at, count);
+  const TableSizes at = tables.bundles[slot].first;
   insertAt(tables.meshes, at.meshes, one.meshes);
   insertAt(tables.groups, at.groups, one.groups);
   insertAt(tables.cells, at.cells, one.cells);
   insertAt(tables.draws, at.draws, one.draws);
   insertAt(tables.volumes, at.volumes, one.volumes);
-  for (std::size_t b = slot + 1u; b < tables.bundles.size(); ++b)
-    tables.bundles[b].first = sum(tables.bundles[b].first, count);
   tables.bundles[slot] = std::move(one.bundles.front());
-  tables.bundles[slot].first = at;
+  renumber(tables);
 }
 
 ResidentTables extract(ResidentTables& tables, std::uint32_t slot) {
   const TableSizes at = tables.bundles[slot].first, count = tables.bundles[slot].count;
   ResidentTables one;
-  one.bundles.push_back(std::move(tables.bundles[slot]));
-  one.bundles.front().first = {};
+  one.bundles.push_back(std::exchange(tables.bundles[slot], {}));
   one.meshes = takeFrom(tables.meshes, at.meshes, count.meshes);
   one.groups = takeFrom(tables.groups, at.groups, count.groups);
   one.cells = takeFrom(tables.cells, at.cells, count.cells);
   one.draws = takeFrom(tables.draws, at.draws, count.draws);
   one.volumes = takeFrom(tables.volumes, at.volumes, count.volumes);
-  setSlot(one, 0);
-  shift(one, {}, negative(at));
-  shift(tables, at, negative(count));
-  tables.bundles[slot] = {};
-  tables.bundles[slot].first = at;
-  for (std::size_t b = slot + 1u; b < tables.bundles.size(); ++b)
-    tables.bundles[b].first = sum(tables.bundles[b].first, negative(count));
+  renumber(one);
+  renumber(tables);
   return one;
 }
 

@@ -88,12 +88,8 @@ struct ResidentMesh {
   std::uint32_t indices_word = 0;                        // uint32
 };
 
-struct ResidentPlane {
-  gpu::Allocation block;   // codes by position, in the page of the cell; empty if not loaded
-  std::uint32_t word = 0;  // first word of the codes
-  std::uint32_t bits = 8;
-  std::uint32_t count = 0;
-  float variance = 0.0f;
+struct ResidentPlane : bundle::WeightPlane {
+  gpu::Allocation block{};  // codes by position, in the page of the cell; empty if not loaded
 };
 
 // Describes one transfer of a cell. Words are in the cell's page; transfer_shared.h has the layout.

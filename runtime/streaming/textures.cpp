@@ -239,10 +239,6 @@ Result<BrdfTexture> makeBrdfTexture(const bundle::BrdfTable& table, const BrdfTe
           "brdf",
           {.format = GL_RGBA32F, .width = texels.width, .height = texels.height, .layers = texels.layers}),
       .order = table.order,
-      .lobes = table.lobes,
-      .isotropic = table.isotropic(),
-      .angles = table.angles,
-      .azimuths = table.azimuths,
       .roughnesses = table.roughnesses,
       .strengths = table.strengths};
   glTextureSubImage3D(made.texture.id(), 0, 0, 0, 0, static_cast<GLsizei>(texels.width),

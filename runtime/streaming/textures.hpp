@@ -92,9 +92,7 @@ BrdfTexels packBrdf(const bundle::BrdfTable& table);
 // Holds a table on the GPU.
 struct BrdfTexture {
   gpu::Texture texture;  // empty until it is loaded
-  std::uint32_t order = 0, lobes = 2;
-  bool isotropic = true;
-  std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
+  std::uint32_t order = 0, roughnesses = 1, strengths = 1;
 };
 // Fails, naming `subject`, if the texture needs more layers than the device supports.
 Result<BrdfTexture> makeBrdfTexture(const bundle::BrdfTable& table, const BrdfTexels& texels,

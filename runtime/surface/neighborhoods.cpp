@@ -99,9 +99,7 @@ PlannedGrids Neighborhoods::gridsNow(const World& world, bool on) {
 }
 
 void Neighborhoods::takePairs(const LightPlan& plan) {
-  counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size()),
-             .ready = plan.grids_ready,
-             .pairs = static_cast<std::uint32_t>(plan.grid_pairs.size())};
+  grids_ready_ = plan.grids_ready;
   if (plan.grid_pairs != pairs_) receivers_changed_.forget();
   pairs_ = plan.grid_pairs;
 }
@@ -119,18 +117,24 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
     return done;
   if (changed) {
     takeReceivers();
-    receivers_table_.assign(std::span<const Receiver>(receivers_));
-    arrivals_table_.assign(std::span<const Arrival>(arrivals_));
-    counters.uploaded_bytes += receivers_.size() * sizeof(Receiver) + arrivals_.size() * sizeof(Arrival);
+    receivers_table_.assign(receivers_, counters);
+    arrivals_table_.assign(arrivals_, counters);
   }
-  counts_.vertex_receivers = static_cast<std::uint32_t>(vertex_draws_.size());
-  counts_.vertex_receivers_shaded = vertex_receivers_.drawsShadedLast();
-  counts_.left_out = left_out_;
-  counts_.written = effect_.gridsWrittenLast();
-  counts_.arrivals = static_cast<std::uint32_t>(arrivals_.size());
-  counts_.receivers = static_cast<std::uint32_t>(
-      std::ranges::count_if(receivers_, [](const Receiver& receiver) { return receiver.count > 0; }));
   return {};
+}
+
+std::array<NamedCount, 9> Neighborhoods::counts() const {
+  const auto receivers = static_cast<std::size_t>(
+      std::ranges::count_if(receivers_, [](const Receiver& receiver) { return receiver.count > 0; }));
+  return {{{"neighborhood_grids", effect_.grids().size()},
+           {"neighborhood_grids_ready", grids_ready_},
+           {"neighborhood_grids_written", effect_.gridsWrittenLast()},
+           {"neighborhood_pairs", pairs_.size()},
+           {"neighborhood_receivers", receivers},
+           {"neighborhood_arrivals", arrivals_.size()},
+           {"neighborhood_vertex_receivers", vertex_draws_.size()},
+           {"neighborhood_vertex_receivers_shaded", vertex_receivers_.drawsShadedLast()},
+           {"neighborhood_arrivals_left_out", left_out_}}};
 }
 
 // Finds which draws receive from which grids, and how. Draws that receive at their vertices have no memory
@@ -192,9 +196,7 @@ void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mod
                        .body_from_group = glm::mat3x4(glm::transpose(glm::mat3_cast(body_from_group))),
                        .grid = grid.place,
                        .whole = whole ? 1u : 0u,
-                       .pad0 = 0,
-                       .pad1 = 0,
-                       .pad2 = 0}});
+                       .pad = {}}});
     }
     std::ranges::stable_sort(found, {}, &Found::distance);
     if (found.size() > kMaxArrivals) {

@@ -9,7 +9,11 @@
 // (effects::neighborhood::hasTransfer). Otherwise it receives per pixel, as an unoccluded surface.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
@@ -25,16 +29,8 @@ namespace lambent::frame {
 // A draw receives from at most this many grids, the nearest ones.
 inline constexpr std::uint32_t kMaxArrivals = 32;
 
-struct NeighborhoodCounts {
-  std::uint32_t grids = 0;                                          // grids that groups have
-  std::uint32_t ready = 0;                                          // grids that have arrived
-  std::uint32_t written = 0;                                        // grids written in the last step
-  std::uint32_t pairs = 0;                                          // pairs (body, group) that grids carry
-  std::uint32_t receivers = 0;                                      // draws that receive
-  std::uint32_t arrivals = 0;                                       // pairs (draw, grid)
-  std::uint32_t left_out = 0;                                       // pairs beyond kMaxArrivals
-  std::uint32_t vertex_receivers = 0, vertex_receivers_shaded = 0;  // draws; shaded in the last step
-};
+// A count of the last step with its name in StepCounts.
+using NamedCount = std::pair<std::string_view, std::size_t>;
 
 class Neighborhoods {
  public:
@@ -63,7 +59,7 @@ class Neighborhoods {
   // Bind what the surface pass reads. bindVertices() uses a binding that glossy draws use otherwise.
   void bind() const;
   void bindVertices() const;
-  const NeighborhoodCounts& counts() const { return counts_; }
+  std::array<NamedCount, 9> counts() const;
   const effects::neighborhood::Neighborhood& effect() const { return effect_; }
   // Returns the pairs that grids carry, as indices of groups in the residency: that of the body, that which
   // receives.
@@ -89,9 +85,9 @@ class Neighborhoods {
   // apart.
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, evaluate::TransferMode, bool> receivers_changed_;
   bool on_ = true;
-  std::uint32_t left_out_ = 0;
+  std::uint32_t grids_ready_ = 0;  // when pairs were chosen
+  std::uint32_t left_out_ = 0;     // pairs (draw, grid) beyond kMaxArrivals
   std::uint64_t version_ = 1;
-  NeighborhoodCounts counts_;
 };
 
 // Adds what bodies with grids change around them, per pixel, or at the vertices of draws that have transfer

@@ -17,7 +17,6 @@ using glm::vec4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindProxyLodView = 0u;  // uniform block
 LAMBENT_CONSTANT kBindProxyLodGroups = 0u;
 LAMBENT_CONSTANT kBindProxyLodTriangles = 1u;
 

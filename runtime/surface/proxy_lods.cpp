@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <utility>
 
 #include "runtime/light_plan/light_plan.hpp"
@@ -18,10 +17,6 @@ constexpr int kProxyLightBands = 3;  // of the light; higher bands hardly reach 
 
 static_assert(sizeof(ProxyLodTriangle) == streaming::kProxyLodTriangleBytes &&
               sizeof(ProxyLodGroup) == streaming::kProxyLodGroupBytes);
-
-struct ProxyViewBlock {
-  glm::mat4 view_from_world, clip_from_view;
-};
 
 std::uint32_t orderOf(const bundle::Group& group) {
   std::uint32_t order = 1;
@@ -50,7 +45,8 @@ ProxyLodTriangle describe(const bundle::CaptureProxy& proxy, const bundle::Proxy
 }  // namespace
 
 ProxyLods::ProxyLods()
-    : triangles_("proxy levels of detail", kPageBytes, std::make_shared<gpu::Staging>(kPageBytes)),
+    : programs_(kSurfaceShaders),
+      triangles_("proxy levels of detail", kPageBytes, std::make_shared<gpu::Staging>(kPageBytes)),
       groups_table_("proxy level of detail groups"),
       view_("proxy level of detail view") {}
 
@@ -148,23 +144,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
     if (options.diffuse)
       for (std::size_t i = 0; i < std::size(record.light); ++i) record.light[i] = glm::vec4(light.c[i], 0.0f);
   }
-  // Uploads only the range from the first to the last record that changed.
-  const auto same = [](const ProxyLodGroup& a, const ProxyLodGroup& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-  };
-  if (groups.size() != groups_.size()) {
-    groups_table_.assign(std::span<const ProxyLodGroup>(groups));
-    counters.uploaded_bytes += groups.size() * sizeof(ProxyLodGroup);
-  } else {
-    std::size_t first = 0, end = groups.size();
-    while (first < end && same(groups[first], groups_[first])) ++first;
-    while (end > first && same(groups[end - 1], groups_[end - 1])) --end;
-    if (end > first)
-      groups_table_.buffer().write(first * sizeof(ProxyLodGroup),
-                                   std::span<const ProxyLodGroup>(groups).subspan(first, end - first));
-    counters.uploaded_bytes += (end - first) * sizeof(ProxyLodGroup);
-  }
-  groups_ = std::move(groups);
+  groups_table_.update(groups, counters);
 }
 
 Result<void> ProxyLods::prepare(const World& world, const lighting::Environment& environment,
@@ -182,23 +162,19 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
     if (Result<void> done = follow(world, counters); !done) return done;
   if (batches_.empty()) return {};
   light(world, environment, lights, options, counters);
-  if (program_) return {};
-  Result<gpu::Program> made = gpu::Program::create(
-      "proxy levels of detail",
-      {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kSurfaceShaders, {});
-  if (!made) return failAgain(made.error());
-  program_ = std::move(*made);
-  no_vertices_ = gpu::VertexArray("proxy levels of detail");
   return {};
 }
 
-void ProxyLods::draw(const spec::View& view, gpu::Counters& counters) {
-  if (batches_.empty()) return;
-  const ProxyViewBlock block{view.view_from_world, view.clip_from_view};
-  view_.assign(std::span<const ProxyViewBlock>(&block, 1));
-  program_->use();
-  glBindBufferBase(GL_UNIFORM_BUFFER, kBindProxyLodView, view_.buffer().id());
+Result<void> ProxyLods::draw(const spec::View& view, gpu::Counters& counters) {
+  if (batches_.empty()) return {};
+  view_.assignOne(ViewBlock{view.view_from_world, view.clip_from_view, {}});
+  if (Result<void> done =
+          programs_.use({{GL_VERTEX_SHADER, "proxy_lod.glsl"}, {GL_FRAGMENT_SHADER, "proxy_lod.glsl"}});
+      !done)
+    return done;
+  view_.bindUniform(kBindView);
   groups_table_.bindStorage(kBindProxyLodGroups);
+  if (!no_vertices_) no_vertices_ = gpu::VertexArray("proxy levels of detail");
   glBindVertexArray(no_vertices_.id());
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
@@ -212,6 +188,7 @@ void ProxyLods::draw(const spec::View& view, gpu::Counters& counters) {
     ++counters.draw_calls;
   }
   glDisable(GL_CULL_FACE);
+  return {};
 }
 
 }  // namespace lambent::frame

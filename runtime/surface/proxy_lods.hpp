@@ -17,8 +17,8 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/gpu/arena.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/local_light.hpp"
 #include "runtime/sh/window.hpp"
@@ -43,7 +43,7 @@ class ProxyLods {
   Result<void> prepare(const World& world, const lighting::Environment& environment,
                        std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
                        gpu::Counters& counters);
-  void draw(const spec::View& view, gpu::Counters& counters);
+  Result<void> draw(const spec::View& view, gpu::Counters& counters);
 
  private:
   // Describes a group in a slot of the table of groups.
@@ -68,12 +68,11 @@ class ProxyLods {
              std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
              gpu::Counters& counters);
 
-  std::optional<gpu::Program> program_;  // compiled when it is first needed
+  gpu::Programs programs_;
   gpu::VertexArray no_vertices_;
   std::vector<Body> bodies_;
   std::map<std::pair<std::uint64_t, bundle::GroupIndex>, std::uint32_t> slots_;  // keyed by id
   std::map<std::uint32_t, Batch> batches_;                                       // keyed by page
-  std::vector<ProxyLodGroup> groups_;                                            // as uploaded
   std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;  // of the environment, indexed by order
   ChangeGate<std::uint64_t> proxy_lods_changed_;
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> scene_changed_;  // lamps, local lights, transforms

@@ -1,12 +1,8 @@
 // Declares what a surface that reflects reads at a pixel: its textures, its table, the corners of the triangle and the
 // direction to the eye; and includes the kernel of the table (glossy_kernel.glsl). The receiver declares
 // looks_at_reflection and looks_at_lobes, the coordinates in these textures (surface_vertex.glsl).
+#include "view_block.glsl"
 
-layout(std140, binding = kBindView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-  vec4 eye;  // world; if w is 0, the direction towards the eye of an orthographic camera
-};
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
 layout(binding = kUnitMetallicRoughness) uniform sampler2D metallic_roughness_texture;
 #ifndef LAMBENT_LAYERED

@@ -49,13 +49,6 @@ layout(std430, binding = kBindProbeLobe) readonly buffer Lobe { float angles[]; 
 
 const float kPi = 3.14159265358979, kGoldenAngle = 2.39996323;
 
-// Returns a frame about the unit vector n [Duff et al., Building an orthonormal basis, revisited, 2017].
-mat3 frameAbout(vec3 n) {
-  float facing = n.z >= 0.0 ? 1.0 : -1.0;
-  float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
-  return mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x), vec3(b, facing + n.y * n.y * a, -n.y), n);
-}
-
 float density(float cos_theta) {
   float root = 0.5 * (1.0 + cos_theta) * (lobe.x * lobe.x - 1.0) + 1.0;
   return lobe.y * max(cos_theta, 0.0) / (root * root);

@@ -28,51 +28,15 @@ constexpr SurfaceFunction kProbes[] = {
     {SurfaceHook::MirroredSky, CalledBy::Ggx, "reflection_probes.glsl", "addGlossyProbes"},
     {SurfaceHook::MirroredSky, CalledBy::Layered, "reflection_probes.glsl", "addLayeredProbes"}};
 
-constexpr GLint kFromMesh = 0, kCount = 1, kMesh = 2;  // uniform locations
-
-}  // namespace
-
-SurfaceVoxelizer::SurfaceVoxelizer() : kernels_(kSurfaceShaders) {}
-
-Result<lighting::SurfaceVoxels> SurfaceVoxelizer::voxelsOf(World& world, std::size_t group,
-                                                           gpu::Counters& counters) {
-  if (Result<void> done = kernels_.use("surface_voxels.comp"); !done) return failAgain(done.error());
-  const scene::Box& box = world.groupBounds(group);
-  lighting::SurfaceVoxels voxels = lighting::SurfaceVoxels::over(box.min, box.max);
-  gpu::Table words("surface voxels");
-  words.assign(std::span<const std::uint32_t>(voxels.words));
-  words.bindStorage(kBindVoxelWords);
-  glUniform3i(kCount, voxels.count.x, voxels.count.y, voxels.count.z);
-  const glm::mat4 voxels_from_world = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f / voxels.edge_m)) *
-                                      glm::translate(glm::mat4(1.0f), -voxels.origin) *
-                                      glm::inverse(world.worldFromGroup(group));
-  const streaming::Residency& residency = world.residency();
-  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
-    const streaming::ResidentDraw& draw = residency.draws()[i];
-    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    if (draw.group != group || !mesh.block) continue;
-    world.residency().geometry().page(mesh.block.page).bindStorage(kBindVoxelGeometry);
-    const glm::mat4 from_mesh = voxels_from_world * describe(world, i).world_from_mesh;
-    // Mirrored nodes reverse the winding, and so do the backs of double-sided surfaces.
-    const bool over = (glm::determinant(glm::mat3(from_mesh)) < 0.0f) != draw.back;
-    const std::uint32_t triangles = mesh.index_count / 3;
-    glUniformMatrix4fv(kFromMesh, 1, GL_FALSE, glm::value_ptr(from_mesh));
-    glUniform4ui(kMesh, mesh.positions_word, mesh.indices_word, triangles, over ? 1 : 0);
-    glDispatchCompute((triangles + kVoxelGroup - 1) / kVoxelGroup, 1, 1);
-    ++counters.dispatches;
-  }
-  words.buffer().read(0, std::span(voxels.words));
-  return voxels;
-}
-
-namespace {
+constexpr GLint kFromMesh = 0, kCount = 1, kMesh = 2;  // uniform locations of surface_voxels.comp
 
 static_assert(kProbeLevels == lighting::kReflectedLevels, "reflection_probes.glsl uses levelOf()");
 static_assert(kProbeShares == lighting::kLobeShares);
 
-// These are the uniform locations of the kernels.
+// These are the uniform locations of the kernels of probes.
 constexpr GLint kFace = 0, kImageLayer = 1, kDistanceLayer = 2, kProjection = 3;
 constexpr GLint kSize = 0, kLobe = 1, kShares = 2, kFirstLayer = 3;
+constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a face
 constexpr std::uint32_t kLevels = std::bit_width(kProbeFaceTexels);
 
 // Returns the number of samples of the lobe: more where it is wide.
@@ -84,8 +48,8 @@ std::uint32_t groupsOf(std::uint32_t texels) {
   return (texels + kProbeGroup - 1) / kProbeGroup;
 }
 
-}  // namespace
-
+// Returns the view of a face of a cube map about a point. Its pixels are the face's texels, in the same
+// order.
 spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m) {
   // The axes of texels are those of runtime/sh/image_layout.hpp. Row 0 of a picture is at the bottom, so "up"
   // is where rows of the face go.
@@ -101,8 +65,45 @@ spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, floa
           .eye_ws = place_ws};
 }
 
-ReflectionProbes::ReflectionProbes()
-    : SurfaceModule(kProbes), kernels_(kSurfaceShaders), block_("reflection probes"), angles_("probe lobe") {
+}  // namespace
+
+Result<lighting::SurfaceVoxels> ReflectionProbes::voxelsOf(World& world, std::size_t group,
+                                                           gpu::Counters& counters) {
+  if (Result<void> done = kernels_.use("surface_voxels.comp"); !done) return failAgain(done.error());
+  const scene::Box& box = world.groupBounds(group);
+  lighting::SurfaceVoxels voxels = lighting::SurfaceVoxels::over(box.min, box.max);
+  gpu::Table words("surface voxels");
+  words.assign(voxels.words);
+  words.bindStorage(kBindVoxelWords);
+  glUniform3i(kCount, voxels.count.x, voxels.count.y, voxels.count.z);
+  const glm::mat4 voxels_from_world = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f / voxels.edge_m)) *
+                                      glm::translate(glm::mat4(1.0f), -voxels.origin) *
+                                      glm::inverse(world.worldFromGroup(group));
+  const streaming::Residency& residency = world.residency();
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+    const streaming::ResidentDraw& draw = residency.draws()[i];
+    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
+    if (draw.group != group || !mesh.block) continue;
+    world.residency().geometry().page(mesh.block.page).bindStorage(kBindVoxelGeometry);
+    const glm::mat4 from_mesh = voxels_from_world * frame::describe(world, i).world_from_mesh;
+    // Mirrored nodes reverse the winding, and so do the backs of double-sided surfaces.
+    const bool over = (glm::determinant(glm::mat3(from_mesh)) < 0.0f) != draw.back;
+    const std::uint32_t triangles = mesh.index_count / 3;
+    glUniformMatrix4fv(kFromMesh, 1, GL_FALSE, glm::value_ptr(from_mesh));
+    glUniform4ui(kMesh, mesh.positions_word, mesh.indices_word, triangles, over ? 1 : 0);
+    glDispatchCompute((triangles + kVoxelGroup - 1) / kVoxelGroup, 1, 1);
+    ++counters.dispatches;
+  }
+  words.buffer().read(0, std::span(voxels.words));
+  return voxels;
+}
+
+ReflectionProbes::ReflectionProbes(const SpecularEnvironmentModule& environment)
+    : SurfaceModule(kProbes),
+      environment_(environment),
+      kernels_(kSurfaceShaders),
+      block_("reflection probes"),
+      angles_("probe lobe") {
   for (std::uint32_t level = 0; level < kProbeLevels; ++level)
     lobes_.push_back(lighting::makeReflectedLobe(lighting::roughnessOfLevel(level, kProbeLevels)));
 }
@@ -137,19 +138,18 @@ void ReflectionProbes::showBy(std::vector<std::uint8_t> draws) {
 
 void ReflectionProbes::makeTargets() {
   const auto count = static_cast<std::uint32_t>(places_.size());
-  const gpu::TextureDesc square{.width = kProbeFaceTexels, .height = kProbeFaceTexels};
-  gpu::TextureDesc desc = square;
-  desc.format = GL_RGBA16F;
-  drawn_ = gpu::Texture("probe face", desc);
-  desc.cube = true;
-  desc.levels = kLevels;
-  weighted_ = gpu::Texture("probe to filter", desc);
-  desc.format = GL_R16F;
-  weights_ = gpu::Texture("probe weights", desc);
-  desc = square;
-  desc.format = GL_DEPTH_COMPONENT32F;
-  depth_ = gpu::Texture("probe depth", desc);
+  const auto target = [](GLenum format) {
+    return gpu::TextureDesc{.format = format, .width = kProbeFaceTexels, .height = kProbeFaceTexels};
+  };
+  drawn_ = gpu::Texture("probe face", target(GL_RGBA16F));
+  depth_ = gpu::Texture("probe depth", target(GL_DEPTH_COMPONENT32F));
   target_ = gpu::Framebuffer("probe face", drawn_, &depth_);
+  gpu::TextureDesc cube = target(GL_RGBA16F);
+  cube.cube = true;
+  cube.levels = kLevels;
+  weighted_ = gpu::Texture("probe to filter", cube);
+  cube.format = GL_R16F;
+  weights_ = gpu::Texture("probe weights", cube);
   images_ = gpu::Texture("reflection probes", {.format = GL_RGBA16F,
                                                .width = kProbeFaceTexels,
                                                .height = kProbeFaceTexels,
@@ -167,24 +167,20 @@ void ReflectionProbes::uploadBlock(bool looked_up) {
   values.counts = {static_cast<float>(places_.size()), looked_up ? 1.0f : 0.0f, 0.0f, 0.0f};
   for (std::size_t i = 0; i < places_.size(); ++i)
     values.places[i] = glm::vec4(places_[i], captured_[i] != 0 ? 1.0f : 0.0f);
-  block_.assign(std::span<const ProbeValues>(&values, 1));
+  block_.assignOne(values);
 }
 
 Result<void> ReflectionProbes::capture(
     std::size_t probe, float near_m, float far_m,
     const std::function<Result<void>(const spec::View&, const spec::Size&)>& draw, gpu::Counters& counters) {
   const spec::Size size{kProbeFaceTexels, kProbeFaceTexels};
-  constexpr float kNothing[4] = {0.0f, 0.0f, 0.0f, 0.0f}, kFar = 1.0f;
   uploadBlock(/*looked_up=*/false);
   for (int face = 0; face < 6; ++face) {
     const spec::View view = probeFaceView(places_[probe], face, near_m, far_m);
-    glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-    glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDepthMask(GL_TRUE);
-    glClearNamedFramebufferfv(target_.id(), GL_COLOR, 0, kNothing);
-    glClearNamedFramebufferfv(target_.id(), GL_DEPTH, 0, &kFar);
+    target_.bind();
+    gpu::testDepth();
+    target_.clearColor({});
+    target_.clearDepth();
     if (Result<void> done = draw(view, size); !done) return done;
     if (Result<void> done = store(probe, face, view.clip_from_view, counters); !done) return done;
   }
@@ -200,8 +196,6 @@ Result<void> ReflectionProbes::store(std::size_t probe, int face, const glm::mat
   if (Result<void> done = kernels_.use("reflection_probe.comp", {{"LAMBENT_STORE", "1"}}); !done) return done;
   drawn_.bind(0);
   depth_.bind(1);
-  glBindSampler(0, 0);
-  glBindSampler(1, 0);
   glUniform1i(kFace, face);
   glUniform1i(kImageLayer, layer);
   glUniform1i(kDistanceLayer, layer + static_cast<GLint>(6 * places_.size()));
@@ -225,11 +219,9 @@ Result<void> ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters
   if (Result<void> done = kernels_.use("reflection_probe.comp"); !done) return done;
   weighted_.bind(0);
   weights_.bind(1);
-  glBindSampler(0, 0);
-  glBindSampler(1, 0);
   for (std::uint32_t level = 1; level < kProbeLevels; ++level) {
     const std::uint32_t side = kProbeFaceTexels >> level;
-    angles_.assign(std::span<const float>(lobes_[level].angles_rad));
+    angles_.assign(lobes_[level].angles_rad);
     angles_.bindStorage(kBindProbeLobe);
     glUniform1i(kSize, static_cast<GLint>(side));
     glUniform2f(kLobe, lobes_[level].alpha, lobes_[level].scale);
@@ -245,9 +237,8 @@ Result<void> ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters
 
 void ReflectionProbes::bindFor(SurfaceReceiver receiver) const {
   const GLuint unit = isLayered(receiver) ? kUnitProbesLayered : kUnitProbesGlossy;
-  glBindBufferBase(GL_UNIFORM_BUFFER, kBindProbes, block_.buffer().id());
+  block_.bindUniform(kBindProbes);
   images_.bind(unit);
-  glBindSampler(unit, 0);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 

@@ -16,7 +16,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
-#include "runtime/evaluate/kernels.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/probe_places.hpp"
 #include "runtime/lighting/sky.hpp"
@@ -25,25 +25,6 @@
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
-
-// Finds the voxels that the surfaces of a rigid group pass through, from the meshes that are resident. It is
-// done once when a room arrives, and waits for the GPU. Render thread only. Fails if the kernel does not
-// compile on this device.
-class SurfaceVoxelizer {
- public:
-  SurfaceVoxelizer();
-  // Returns the voxels in the group's frame.
-  Result<lighting::SurfaceVoxels> voxelsOf(World& world, std::size_t group, gpu::Counters& counters);
-
- private:
-  evaluate::Kernels kernels_;
-};
-
-inline constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a face
-
-// Returns the view of a face of a cube map about a point. Its pixels are the face's texels, in the same
-// order.
-spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m);
 
 // Adds what mirrors show of the environment beyond the few bands of light, if it has been prefiltered and is
 // shown. It refers to what must outlive it.
@@ -64,7 +45,8 @@ class SpecularEnvironmentModule final : public SurfaceModule {
 // is called before.
 class ReflectionProbes final : public SurfaceModule {
  public:
-  ReflectionProbes();
+  // The environment must outlive it.
+  explicit ReflectionProbes(const SpecularEnvironmentModule& environment);
 
   // Sets where probes are, at most kMostProbes. Those that stay where they were, in the same order, stay
   // captured.
@@ -72,14 +54,16 @@ class ReflectionProbes final : public SurfaceModule {
   const std::vector<glm::vec3>& places() const { return places_; }
   // Sets which draws look probes up, by index in the residency.
   void showBy(std::vector<std::uint8_t> draws);
-  void setEnvironment(const SpecularEnvironmentModule& environment) { environment_ = &environment; }
   bool reaches(std::size_t draw, const SurfaceDraw& record) const override {
     return !places_.empty() && draw < draws_.size() && draws_[draw] != 0 &&
-           environment_->reaches(draw, record);
+           environment_.reaches(draw, record);
   }
-  std::uint64_t version() const override { return layout_version_ + environment_->version(); }
+  std::uint64_t version() const override { return layout_version_ + environment_.version(); }
   void bindFor(SurfaceReceiver receiver) const override;
 
+  // Returns the voxels that the surfaces of a rigid group pass through, in the group's frame, from the meshes
+  // that are resident. It is done once when a room arrives, and waits for the GPU.
+  Result<lighting::SurfaceVoxels> voxelsOf(World& world, std::size_t group, gpu::Counters& counters);
   // Captures a probe: binds and clears a target for each face and calls `draw`, which draws what is opaque
   // and then what is blended. Depths are those of the view. While it draws, surfaces look no probes up.
   Result<void> capture(std::size_t probe, float near_m, float far_m,
@@ -92,8 +76,8 @@ class ReflectionProbes final : public SurfaceModule {
   Result<void> store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters);
   Result<void> filter(std::size_t probe, gpu::Counters& counters);
 
-  const SpecularEnvironmentModule* environment_ = nullptr;  // set before draws ask
-  evaluate::Kernels kernels_;
+  const SpecularEnvironmentModule& environment_;
+  gpu::Programs kernels_;
   std::vector<lighting::ReflectedLobe> lobes_;  // one per level
   std::vector<glm::vec3> places_;
   std::vector<std::uint8_t> captured_;  // one per place

@@ -1,14 +1,9 @@
 // Draws surfaces that compute shaders have shaded; vertices are pulled from the arenas. The receiver's part of the
 // vertex stage (surface_vertex.glsl) writes what its fragment stage reads. Outputs that are never read cost nothing, because the two stages are linked together.
-#include "surface_shared.h"
+#include "view_block.glsl"
 #include "surface_kind.glsl"
 #include "surface_normal.glsl"
 
-layout(std140, binding = kBindView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-  vec4 eye;  // see glossy_receiver.glsl
-};
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
 

@@ -1,7 +1,7 @@
 #include "runtime/surface/surfaces.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,31 +59,25 @@ struct Caller {
   const char* arguments;
 };
 
-Caller vertexCaller(SurfaceReceiver receiver) {
-  return {SurfaceHook::Vertex, "vertex_light.glsl",
-          isNormalMapped(receiver) ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
-                                   : "addVertexLight(uint vertex, inout vec3 light)",
-          "vertex, light"};
-}
-
-Caller mirrorCaller(SurfaceReceiver receiver) {
-  if (isLayered(receiver))
-    return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-            "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
-            "mirror, light, mirrored, highlights"};
+std::array<Caller, 4> callersOf(SurfaceReceiver receiver) {
+  const bool layered = isLayered(receiver);
   return {
-      SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-      "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
-      "reflected, light, mirrored, highlights"};
+      {{SurfaceHook::Vertex, "vertex_light.glsl",
+        isNormalMapped(receiver) ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
+                                 : "addVertexLight(uint vertex, inout vec3 light)",
+        "vertex, light"},
+       {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+        layered
+            ? "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)"
+            : "addMirroredSky(Reflected mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 "
+              "highlights)",
+        "mirror, light, mirrored, highlights"},
+       {SurfaceHook::Gathered, "gathered_light.glsl",
+        "addGatheredLight(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])",
+        "corners, weights, light"},
+       {SurfaceHook::Received, "received_light.glsl",
+        "receiveLight(SurfacePoint at, inout SurfaceLight light)", "at, light"}}};
 }
-
-constexpr Caller kPixelCallers[] = {
-    {SurfaceHook::Gathered, "gathered_light.glsl",
-     "addGatheredLight(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])",
-     "corners, weights, light"},
-    {SurfaceHook::Received, "received_light.glsl", "receiveLight(SurfacePoint at, inout SurfaceLight light)",
-     "at, light"},
-};
 
 gpu::WrittenFile callerFile(const Caller& caller, std::span<const SurfaceFunction> functions) {
   std::string includes, body;
@@ -115,10 +109,8 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
   }
   std::vector<gpu::WrittenFile> written = {
       {"surface_kind.glsl", kindText(kind, finest_texels)},
-      {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))},
-      callerFile(vertexCaller(receiver), functions),
-      callerFile(mirrorCaller(receiver), functions)};
-  for (const Caller& caller : kPixelCallers) written.push_back(callerFile(caller, functions));
+      {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))}};
+  for (const Caller& caller : callersOf(receiver)) written.push_back(callerFile(caller, functions));
   std::vector<gpu::Define> defines;
   if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
   if (isNormalMapped(receiver)) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
@@ -143,13 +135,14 @@ glm::vec4 eyeOf(const spec::View& view) {
 
 }  // namespace
 
-Surfaces::Surfaces(bool finest_texels)
+Surfaces::Surfaces(bool finest_texels, const SurfaceModules& modules)
     : finest_texels_(finest_texels),
       indices_("surface"),
       draws_("surface draws"),
       glossy_draws_("glossy draws"),
       commands_("surface commands"),
-      view_("view") {}
+      view_("view"),
+      modules_(modules) {}
 
 Result<void> Surfaces::compile(const SurfaceKind& kind) {
   if (programs_.contains(kind)) return {};
@@ -171,12 +164,12 @@ bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffus
 
 // Until what its vertices see is known, a layered draw is shown without its layer.
 bool Surfaces::layered(const World& world, std::size_t draw) const {
-  return options_.glossy && seen_sky_ != nullptr && seen_sky_->known(draw) && layerReady(world, draw);
+  return options_.glossy && seen_sky_->known(draw) && layerReady(world, draw);
 }
 
 SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
-  const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
-  SurfaceKind kind{.view = other ? view_shown_ : SurfaceView::Final};
+  const bool other = options_.view == SurfaceView::Irradiance || options_.view == SurfaceView::Normals;
+  SurfaceKind kind{.view = other ? options_.view : SurfaceView::Final};
   if (dark(world, draw)) {
     kind.dark = true;
     return kind;
@@ -261,8 +254,8 @@ Result<void> Surfaces::collect(World& world, const effects::diffuse::Diffuse& di
   }
   std::ranges::stable_sort(opaque_items_, std::ranges::less(), &Item::state);
   std::ranges::stable_sort(blended_items_, std::ranges::greater(), &Item::distance);
-  upload(draws_, records_, records_uploaded_, counters);
-  upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
+  draws_.update(records_, counters);
+  glossy_draws_.update(glossy_records_, counters);
   indices_.reserve(records_.size());
   return {};
 }
@@ -281,23 +274,18 @@ void Surfaces::appendRuns(const World& world, const Items& items, std::vector<Ru
   }
 }
 
-Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                               const SurfaceInputs& inputs, gpu::Counters& counters) {
-  const bool options_same = std::exchange(options_, inputs.options) == inputs.options;
-  seen_sky_ = inputs.seen_sky;
-  modules_.assign(inputs.modules.begin(), inputs.modules.end());
-  const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
-  view_.assign(std::span<const ViewBlock>(&block, 1));
+Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse,
+                               const evaluate::SeenSky& seen_sky, const spec::View& view,
+                               const SurfaceOptions& options, gpu::Counters& counters) {
+  const bool options_same = std::exchange(options_, options) == options;
+  seen_sky_ = &seen_sky;
+  view_.assignOne(ViewBlock{view.view_from_world, view.clip_from_view, eyeOf(view)});
   const streaming::Residency& residency = world.residency();
   std::uint64_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
-  std::vector<std::uint64_t> now = {residency.version(),
-                                    world.transformsVersion(),
-                                    world.lampsVersion(),
-                                    world.materialsVersion(),
-                                    shaded,
-                                    static_cast<std::uint64_t>(view_shown_),
-                                    seen_sky_ != nullptr ? seen_sky_->version() : 0};
+  std::vector<std::uint64_t> now = {
+      residency.version(), world.transformsVersion(), world.lampsVersion(), world.materialsVersion(), shaded,
+      seen_sky.version()};
   for (const SurfaceModule* module : modules_) now.push_back(module->version());
   const bool scene_same = options_same && now == seen_;
   const bool same = scene_same && (blended_items_.empty() || view.eye_ws == eye_seen_ws_);
@@ -312,38 +300,13 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   blended_.clear();
   appendRuns(world, opaque_items_, opaque_, commands);
   appendRuns(world, blended_items_, blended_, commands);
-  upload(commands_, commands, commands_uploaded_, counters);
+  commands_.update(commands, counters);
   return {};
-}
-
-template <typename Record>
-void Surfaces::upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
-                      gpu::Counters& counters) {
-  const auto same = [&](std::size_t i) {
-    return std::memcmp(&records[i], &uploaded[i], sizeof(Record)) == 0;
-  };
-  if (records.size() != uploaded.size()) {
-    table.assign(std::span<const Record>(records));
-    counters.uploaded_bytes += records.size() * sizeof(Record);
-  } else {
-    for (std::size_t first = 0; first < records.size();) {
-      if (same(first)) {
-        ++first;
-        continue;
-      }
-      std::size_t end = first + 1;
-      while (end < records.size() && !same(end)) ++end;
-      table.buffer().write(first * sizeof(Record), std::span(records).subspan(first, end - first));
-      counters.uploaded_bytes += (end - first) * sizeof(Record);
-      first = end;
-    }
-  }
-  uploaded = records;
 }
 
 void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters) {
   if (runs.empty()) return;
-  glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
+  view_.bindUniform(kBindView);
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
   for (const Run& run : runs) {
@@ -363,11 +326,9 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     if (kind.glossy.bands > 0)
       units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
     if (kind.layered) seen_sky_->bindKernel(kUnitSeenKernel);
-    if (kind.texels) {
+    if (kind.texels)
       world.residency().draws()[static_cast<std::size_t>(run.state.irradiance)].irradiance.bind(
           kUnitIrradiance);
-      glBindSampler(kUnitIrradiance, 0);  // the texture's own sampling is used
-    }
     for (std::size_t m = 0; m < modules_.size(); ++m)
       if ((kind.modules & bitOf(m)) != 0) modules_[m]->bindFor(kind.receiver());
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);

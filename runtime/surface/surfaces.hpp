@@ -61,31 +61,26 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
 struct SurfaceOptions {
   bool diffuse = true, glossy = true;  // false: such surfaces reflect nothing
   std::uint32_t glossy_bands = 8;      // largest number of bands that glossy surfaces reflect
+  // Irradiance and Normals have programs of their own, compiled when they are first asked for; all other
+  // views are drawn as Final.
+  SurfaceView view = SurfaceView::Final;
   bool operator==(const SurfaceOptions&) const = default;
-};
-
-struct SurfaceInputs {
-  SurfaceOptions options{};
-  const evaluate::SeenSky* seen_sky = nullptr;  // null: layers are not shown
-  std::span<const SurfaceModule* const> modules{};
 };
 
 class Surfaces {
  public:
   // If finest_texels is set, textures are read at their full resolution, for pictures with one ray per pixel.
-  explicit Surfaces(bool finest_texels);
+  // The modules must outlive the surfaces and stay the same.
+  Surfaces(bool finest_texels, const SurfaceModules& modules);
 
-  // Updates draw records and commands. The modules must live until surfaces are drawn, and be the same ones
-  // in the same order in each frame.
-  Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                       const SurfaceInputs& inputs, gpu::Counters& counters);
+  // Updates draw records and commands. What vertices see of the sky must live until surfaces are drawn.
+  Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse,
+                       const evaluate::SeenSky& seen_sky, const spec::View& view,
+                       const SurfaceOptions& options, gpu::Counters& counters);
   // Returns how many draws the last prepare() left out because the view does not reach them.
   std::uint32_t countOutOfView() const { return out_of_view_; }
   // Returns whether the last prepare() has the draw in the picture, if the view reaches it.
   bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
-  // Sets what surfaces show from the next prepare() on. Irradiance and Normals have programs of their own,
-  // compiled when they are first asked for; all other views are drawn as Final.
-  void setView(SurfaceView view) { view_shown_ = view; }
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
@@ -124,10 +119,6 @@ class Surfaces {
   bool lookAt(const World& world, const spec::View& view);
   void appendRuns(const World& world, const Items& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
-  // Uploads the part of a table that changed, or all of it if its size did.
-  template <typename Record>
-  static void upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
-                     gpu::Counters& counters);
   Result<void> compile(const SurfaceKind& kind);
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
@@ -136,22 +127,20 @@ class Surfaces {
   TextureUnits units_;
   DrawIndices indices_;
   gpu::Table draws_, glossy_draws_, commands_, view_;
-  std::vector<SurfaceDraw> records_, records_uploaded_;
-  std::vector<GlossyDraw> glossy_records_, glossy_uploaded_;
-  std::vector<DrawCommand> commands_uploaded_;
+  std::vector<SurfaceDraw> records_;
+  std::vector<GlossyDraw> glossy_records_;
   std::vector<std::uint8_t> shown_, in_view_;  // indexed by draw
   std::uint32_t out_of_view_ = 0;
   Items opaque_items_, blended_items_;
   std::vector<scene::Box> bounds_ws_;  // indexed by draw; empty: not known, so it is in view
   ChangeGate<std::uint64_t, std::uint64_t> bounds_from_;  // residency and transforms
   SurfaceOptions options_;
-  const evaluate::SeenSky* seen_sky_ = nullptr;
-  std::vector<std::uint32_t> glossy_index_;  // index of each draw in glossy_records_
+  const evaluate::SeenSky* seen_sky_ = nullptr;  // of the last prepare()
+  std::vector<std::uint32_t> glossy_index_;      // index of each draw in glossy_records_
   std::vector<Run> opaque_, blended_;
-  std::vector<const SurfaceModule*> modules_;  // modules of this frame
-  std::vector<std::uint64_t> seen_;            // versions of all that records and commands depend on
+  const SurfaceModules& modules_;
+  std::vector<std::uint64_t> seen_;  // versions of all that records and commands depend on
   glm::vec3 eye_seen_ws_{0.0f};
-  SurfaceView view_shown_ = SurfaceView::Final;
 };
 
 }  // namespace lambent::frame

@@ -15,13 +15,6 @@ vec3 viridis(float t) {
   return clamp(c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6))))), 0.0, 1.0);
 }
 
-// Interpolates the ends and the middle of Moreland's cool-warm map (2009): -1 blue, 0 light grey, 1 red.
-vec3 coolWarm(float t) {
-  t = clamp(t, -1.0, 1.0);
-  const vec3 kMiddle = vec3(0.865, 0.865, 0.865);
-  return t < 0.0 ? mix(kMiddle, vec3(0.230, 0.299, 0.754), -t) : mix(kMiddle, vec3(0.706, 0.016, 0.150), t);
-}
-
 // Hashes by PCG (Jarzynski and Olano 2020).
 uint hashed(uint v) {
   v = v * 747796405u + 2891336453u;

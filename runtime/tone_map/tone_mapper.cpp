@@ -1,7 +1,7 @@
 #include "runtime/tone_map/tone_mapper.hpp"
 
 #include <cmath>
-#include <vector>
+#include <string>
 
 #include "lambent_tone_map_embedded.hpp"
 
@@ -18,42 +18,29 @@ struct ExposureRecord {
 
 }  // namespace
 
-Result<ToneMapper> ToneMapper::create(std::uint32_t samples, bool linear) {
-  std::vector<gpu::Define> defines;
-  if (samples > 0) defines.push_back({"LAMBENT_SAMPLES", std::to_string(samples)});
-  if (linear) defines.push_back({"LAMBENT_LINEAR", "1"});
-  ToneMapper mapper;
-  Result<gpu::Program> meter =
-      gpu::Program::create("meter", {{GL_COMPUTE_SHADER, "meter.comp"}}, kShaders, defines);
-  if (!meter) return failAgain(meter.error());
-  mapper.meter_ = std::move(*meter);
-  Result<gpu::Program> resolve = gpu::Program::create(
-      "resolve", {{GL_VERTEX_SHADER, "full_screen.vert"}, {GL_FRAGMENT_SHADER, "resolve.frag"}}, kShaders,
-      defines);
-  if (!resolve) return failAgain(resolve.error());
-  mapper.resolve_ = std::move(*resolve);
-  mapper.exposure_ = gpu::Buffer("exposure", sizeof(ExposureRecord));
-  mapper.no_vertices_ = gpu::VertexArray("full screen");
-  return mapper;
+ToneMapper::ToneMapper(std::uint32_t samples, bool linear)
+    : kernels_(kShaders), exposure_("exposure", sizeof(ExposureRecord)), no_vertices_("full screen") {
+  if (samples > 0) defines_.push_back({"LAMBENT_SAMPLES", std::to_string(samples)});
+  if (linear) defines_.push_back({"LAMBENT_LINEAR", "1"});
 }
 
-void ToneMapper::run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters,
-                     bool as_is) {
+Result<void> ToneMapper::run(const gpu::Texture& hdr, std::optional<float> exposure_ev,
+                             gpu::Counters& counters, bool as_is) {
   hdr.bind(0);
-  glBindSampler(0, 0);
   exposure_.bindStorage(0);
-  meter_.use();
+  if (Result<void> done = kernels_.use("meter.comp", defines_); !done) return done;
   glUniform1f(0, exposure_ev ? std::exp2(*exposure_ev) : 0.0f);
   glDispatchCompute(1, 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  resolve_.use();
-  glUniform1ui(0, as_is ? 1u : 0u);
-  glBindVertexArray(no_vertices_.id());
-  glDisable(GL_DEPTH_TEST);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
   ++counters.dispatches;
-  ++counters.draws;
-  ++counters.draw_calls;
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  if (Result<void> done = kernels_.use(
+          {{GL_VERTEX_SHADER, "full_screen.vert"}, {GL_FRAGMENT_SHADER, "resolve.frag"}}, defines_);
+      !done)
+    return done;
+  glUniform1ui(0, as_is ? 1u : 0u);
+  glDisable(GL_DEPTH_TEST);
+  no_vertices_.draw(3, counters);
+  return {};
 }
 
 std::uint32_t ToneMapper::negativePixels() const {

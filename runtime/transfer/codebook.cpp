@@ -251,55 +251,169 @@ Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> 
 
 // --- whole cells ---
 
-TransferDecoder::TransferDecoder(const TransferShape& shape, const Codebook& codebook,
-                                 std::span<const std::uint32_t> cluster_of,
-                                 std::span<const std::vector<std::uint32_t>> planes)
-    : size_(shape.size()),
-      codebook_(codebook),
-      cluster_of_(cluster_of),
-      planes_(planes),
-      first_axis_(codebook.clusters() + 1, 0),
-      sample_at_(positionsOf(cluster_of, static_cast<std::uint32_t>(codebook.clusters()))) {
-  for (std::size_t c = 0; c < codebook.clusters(); ++c)
-    first_axis_[c + 1] = first_axis_[c] + codebook.axis_counts[c];
-  assert(codebook.axes.size() == first_axis_.back() &&
-         codebook.vectors.size() == (first_axis_.back() + codebook.clusters()) * size_);
-}
-
-void TransferDecoder::decode(std::size_t begin, std::size_t end, std::span<float> out) const {
-  for (std::size_t position = begin; position < end; ++position) {
-    const std::size_t sample = sample_at_[position], cluster = cluster_of_[sample];
-    const std::size_t axes = std::min<std::size_t>(codebook_.axis_counts[cluster], planes_.size());
-    const float* mean = codebook_.vectors.data() + (first_axis_[cluster] + cluster) * size_;
-    float* vector = out.data() + sample * size_;
-    std::copy_n(mean, size_, vector);
-    const auto weight = [&](std::size_t j) {
-      const AxisCode& code = codebook_.axes[first_axis_[cluster] + j];
-      return code.offset + code.scale * static_cast<float>(planes_[j][position]);
-    };
-    std::size_t j = 0;
-    for (; j + 4 <= axes; j += 4) {  // four at a time, since the sum is loaded and stored for each pass
-      const std::array<float, 4> w = {weight(j), weight(j + 1), weight(j + 2), weight(j + 3)};
-      const float* axis = mean + (1 + j) * size_;
-      for (std::size_t i = 0; i < size_; ++i) {
-        float sum = vector[i];
-        for (std::size_t k = 0; k < w.size(); ++k) sum += w[k] * axis[k * size_ + i];
-        vector[i] = sum;
-      }
-    }
-    for (; j < axes; ++j) {
-      const float w = weight(j), *axis = mean + (1 + j) * size_;
-      for (std::size_t i = 0; i < size_; ++i) vector[i] += w * axis[i];
-    }
-  }
-}
-
 std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
                                   std::span<const std::uint32_t> cluster_of,
-                                  std::span<const std::vector<std::uint32_t>> planes) {
-  std::vector<float> out(cluster_of.size() * shape.size());
-  TransferDecoder(shape, codebook, cluster_of, planes).decode(0, cluster_of.size(), out);
+                                  std::span<const std::vector<std::uint32_t>> planes, const RunRanges& run) {
+  const std::size_t size = shape.size();
+  std::vector<std::size_t> first_axis(codebook.clusters() + 1, 0);
+  for (std::size_t c = 0; c < codebook.clusters(); ++c)
+    first_axis[c + 1] = first_axis[c] + codebook.axis_counts[c];
+  assert(codebook.axes.size() == first_axis.back() &&
+         codebook.vectors.size() == (first_axis.back() + codebook.clusters()) * size);
+  const auto sample_at = positionsOf(cluster_of, static_cast<std::uint32_t>(codebook.clusters()));
+  std::vector<float> out(cluster_of.size() * size);
+  run(cluster_of.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t position = begin; position < end; ++position) {
+      const std::size_t sample = sample_at[position], cluster = cluster_of[sample];
+      const std::size_t axes = std::min<std::size_t>(codebook.axis_counts[cluster], planes.size());
+      const float* mean = codebook.vectors.data() + (first_axis[cluster] + cluster) * size;
+      float* vector = out.data() + sample * size;
+      std::copy_n(mean, size, vector);
+      const auto weight = [&](std::size_t j) {
+        const AxisCode& code = codebook.axes[first_axis[cluster] + j];
+        return code.offset + code.scale * static_cast<float>(planes[j][position]);
+      };
+      std::size_t j = 0;
+      for (; j + 4 <= axes; j += 4) {  // four at a time, since the sum is loaded and stored for each pass
+        const std::array<float, 4> w = {weight(j), weight(j + 1), weight(j + 2), weight(j + 3)};
+        const float* axis = mean + (1 + j) * size;
+        for (std::size_t i = 0; i < size; ++i) {
+          float sum = vector[i];
+          for (std::size_t k = 0; k < w.size(); ++k) sum += w[k] * axis[k * size + i];
+          vector[i] = sum;
+        }
+      }
+      for (; j < axes; ++j) {
+        const float w = weight(j), *axis = mean + (1 + j) * size;
+        for (std::size_t i = 0; i < size; ++i) vector[i] += w * axis[i];
+      }
+    }
+  });
   return out;
+}
+
+namespace {
+
+// First word of a rows payload. Format version 1 used 0 and 1 for samples that were not stored as
+// differences.
+constexpr std::uint32_t kSingleRows = 2, kSparseRows = 3;
+constexpr std::uint32_t kWeightOne = 65535;
+
+// Returns differences of successive samples. If a mesh uses its samples in order, these are 0 and 1, which
+// compress to almost nothing.
+std::vector<std::uint32_t> differences(std::span<const std::uint32_t> samples) {
+  std::vector<std::uint32_t> out(samples.begin(), samples.end());
+  std::adjacent_difference(out.begin(), out.end(), out.begin());
+  return out;
+}
+
+// Appends the weights of a row as integers that sum to exactly 65535. The largest weight absorbs rounding
+// errors.
+void quantizeRow(std::span<const float> weights, std::vector<std::uint16_t>& out) {
+  const std::size_t first = out.size();
+  std::uint32_t sum = 0;
+  for (const float weight : weights) {
+    const auto q =
+        static_cast<std::uint32_t>(std::lround(std::clamp(weight, 0.0f, 1.0f) * float{kWeightOne}));
+    out.push_back(static_cast<std::uint16_t>(q));
+    sum += q;
+  }
+  if (weights.empty()) return;
+  const auto largest = std::max_element(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
+  *largest = static_cast<std::uint16_t>(*largest + kWeightOne - sum);
+}
+
+}  // namespace
+
+std::vector<std::byte> encodeRows(const VertexWeights& rows) {
+  const std::size_t vertex_count = rows.offsets.size() - 1;
+  const bool single =
+      rows.samples.size() == vertex_count &&
+      std::all_of(rows.weights.begin(), rows.weights.end(), [](float w) { return w == 1.0f; });
+  std::vector<std::byte> out;
+  const std::uint32_t head[] = {single ? kSingleRows : kSparseRows,
+                                static_cast<std::uint32_t>(rows.samples.size())};
+  appendValues<std::uint32_t>(out, head);
+  if (!single) appendValues<std::uint32_t>(out, rows.offsets);
+  appendValues<std::uint32_t>(out, differences(rows.samples));
+  if (!single) {
+    std::vector<std::uint16_t> weights;
+    for (std::size_t v = 0; v < vertex_count; ++v)
+      quantizeRow(std::span(rows.weights).subspan(rows.offsets[v], rows.offsets[v + 1] - rows.offsets[v]),
+                  weights);
+    appendValues<std::uint16_t>(out, weights);
+  }
+  return out;
+}
+
+Result<VertexWeights> decodeRows(std::span<const std::byte> bytes, std::uint32_t vertex_count,
+                                 std::uint32_t sample_count, const std::string& subject) {
+  const auto damaged = [&](const char* why) {
+    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kCopyAgain);
+  };
+  if (bytes.size() < 8) return damaged("too short");
+  Front front(bytes);
+  const auto head = front.values<std::uint32_t>(2);
+  const std::size_t entries = head[1];
+  const bool single = head[0] == kSingleRows;
+  if (!single && head[0] != kSparseRows) return damaged("of an unknown kind");
+  const std::size_t vertices = vertex_count;
+  const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
+  if (front.left() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
+
+  VertexWeights rows;
+  if (single) {
+    rows.offsets.resize(vertices + 1);
+    for (std::uint32_t v = 0; v <= vertex_count; ++v) rows.offsets[v] = v;
+  } else {
+    rows.offsets = front.values<std::uint32_t>(vertices + 1);
+    if (rows.offsets.front() != 0 || rows.offsets.back() != entries ||
+        !std::is_sorted(rows.offsets.begin(), rows.offsets.end()))
+      return damaged("offsets do not rise from 0 to the number of entries");
+  }
+  rows.samples = front.values<std::uint32_t>(entries);
+  std::partial_sum(rows.samples.begin(), rows.samples.end(), rows.samples.begin());
+  for (const std::uint32_t sample : rows.samples)
+    if (sample >= sample_count) return damaged("a sample that the group does not have");
+  rows.weights.assign(entries, 1.0f);
+  if (!single) {
+    const auto weights = front.values<std::uint16_t>(entries);
+    for (std::size_t e = 0; e < entries; ++e)
+      rows.weights[e] = static_cast<float>(weights[e]) / float{kWeightOne};
+  }
+  return rows;
+}
+
+std::vector<std::byte> encodeLightWeights(std::span<const LightWeights> samples) {
+  std::vector<std::byte> out;
+  out.reserve(samples.size() * 2 * kLightsPerSample);
+  for (std::size_t k = 0; k < kLightsPerSample; ++k)
+    for (const LightWeights& sample : samples) out.push_back(static_cast<std::byte>(sample.light[k]));
+  for (std::size_t k = 0; k < kLightsPerSample; ++k)
+    for (const LightWeights& sample : samples) out.push_back(static_cast<std::byte>(sample.weight[k]));
+  return out;
+}
+
+Result<std::vector<LightWeights>> decodeLightWeights(std::span<const std::byte> bytes,
+                                                     std::size_t sample_count, std::size_t light_count,
+                                                     const std::string& subject) {
+  const auto damaged = [&](const char* why) {
+    return fail(subject, std::string("has damaged light weights: ") + why, kCopyAgain);
+  };
+  if (bytes.size() / (2 * kLightsPerSample) != sample_count || bytes.size() % (2 * kLightsPerSample) != 0)
+    return damaged("of another number of samples");
+  std::vector<LightWeights> samples(sample_count);
+  for (std::size_t i = 0; i < sample_count; ++i) {
+    LightWeights& sample = samples[i];
+    for (std::size_t k = 0; k < kLightsPerSample; ++k) {
+      sample.light[k] = std::to_integer<std::uint8_t>(bytes[k * sample_count + i]);
+      sample.weight[k] = std::to_integer<std::uint8_t>(bytes[(kLightsPerSample + k) * sample_count + i]);
+      if (sample.light[k] >= light_count) return damaged("a light probe that the cell does not have");
+    }
+    if (std::accumulate(sample.weight.begin(), sample.weight.end(), 0u) != 255)
+      return damaged("the weights of a sample do not sum to 255");
+  }
+  return samples;
 }
 
 }  // namespace lambent::transfer

@@ -19,7 +19,33 @@ LAMBENT_CONSTANT kSeenWords = (kSeenCoefficients + 1u) / 2u;
 
 LAMBENT_CONSTANT kSeenWeights = kSeenBands * (kSeenBands + 1u) / 2u;  // of the kernel that reads them
 
+// What the kernels of evaluate/seen_sky.hpp bind and read besides transfer_shared.h.
+LAMBENT_CONSTANT kBindSeenCells = 1u;     // SeenCell
+LAMBENT_CONSTANT kBindSeenSamples = 6u;   // per sample and output kSeenWords words
+LAMBENT_CONSTANT kBindSeenDraws = 1u;     // SeenDraw
+LAMBENT_CONSTANT kBindSeenRows = 2u;      // arena page
+LAMBENT_CONSTANT kBindSeenGeometry = 3u;  // arena page, holds the normals
+LAMBENT_CONSTANT kBindSeenVertices = 4u;  // arena page of radiance
+
+struct SeenCell {
+  uint transfer;    // index of the TransferRecord
+  uint first_word;  // of the cell's first sample
+};
+
+struct SeenDraw {
+  float group_from_mesh_normal[12];  // three columns of vec4
+  uint vertex_count;
+  uint normals_word;
+  uint rows_word;
+  uint row_entries;
+  uint first_sample;  // the sample of the group whose words are at samples_word
+  uint samples_word;
+  uint seen_word;  // where the result is written
+  uint pad;
+};
+
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
+static_assert(sizeof(SeenDraw) == 80);
 }  // namespace lambent::transfer
 #endif

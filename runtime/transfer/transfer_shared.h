@@ -7,17 +7,16 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime/transfer/layout.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::transfer {
 using uint = std::uint32_t;
 #define LAMBENT_CONSTANT inline constexpr uint
 #else
 #define LAMBENT_CONSTANT const uint
-// The number of outputs of samples and draws with normal maps: light of bands 0..2 (layout.hpp).
+// The number of outputs of samples and draws with normal maps: light of bands 0..2 (codebook.hpp).
 LAMBENT_CONSTANT kMappedOutputs = 9u;
-LAMBENT_CONSTANT kLightsPerSample = 4u;  // light probes that may light one sample (light_weights.hpp)
+LAMBENT_CONSTANT kLightsPerSample = 4u;  // light probes that may light one sample (codebook.hpp)
 #endif
 
 LAMBENT_CONSTANT kBindWork = 0u;  // WorkItem per work group

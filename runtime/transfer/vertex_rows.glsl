@@ -1,4 +1,4 @@
-// Reads the rows of vertices (weights.hpp), which say from which samples a vertex takes its light. A draw's rows
+// Reads the rows of vertices (codebook.hpp), which say from which samples a vertex takes its light. A draw's rows
 // are words of a page: vertex_count + 1 offsets of entries, then the entries' samples, then their weights, two to a
 // word as unorm16.
 uint rowWordAt(uint word);  // word of the rows page

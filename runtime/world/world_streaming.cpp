@@ -367,7 +367,7 @@ Result<void> World::beginSurfaces(std::uint32_t slot) {
   for (std::uint32_t g = 0; g < bundle.proxies.size(); ++g)
     if (bundle.proxies[g])
       if (Result<void> done =
-              residency_.upload(slot, streaming::ProxyChunk{bundle::GroupIndex{g}, *bundle.proxies[g]});
+              residency_.upload(slot, streaming::ProxyChunk{{bundle::GroupIndex{g}}, *bundle.proxies[g]});
           !done)
         return done;
   return {};

@@ -5,7 +5,6 @@
 
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/glb.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"

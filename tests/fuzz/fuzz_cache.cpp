@@ -1,5 +1,4 @@
 // Reads cache entries and what is stored in them.
-#include "baker/cache/bytes.hpp"
 #include "baker/cache/cache.hpp"
 #include "baker/trace/hits.hpp"
 #include "baker/transport/geometry_key.hpp"

@@ -177,16 +177,6 @@ TEST_F(LambentProgram, TellsALogFileThatItTakesLongAndEveryTenSecondsHowFarItIs)
       << "a log file has no line to go back in";
 }
 
-TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
-  std::filesystem::create_directories(folder / "cache");
-  writeBytes(folder / "cache/journal", "a file where the journal's folder has to be");
-  const Outcome baked = bakeHello("hello.lmb.glb", {"--cache", path("cache")});
-  EXPECT_EQ(baked.exit_code, 0) << baked.err;
-  EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
-  EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
-  EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
-}
-
 TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
   ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
   const Outcome gallery = lambent({"bake", kGallery, "-o", path("gallery.lmb.glb"), "--quality", "draft"});

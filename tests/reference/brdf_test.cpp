@@ -5,7 +5,6 @@
 #include "reference/surfaces.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker::reference {
 namespace {
@@ -28,11 +27,10 @@ struct Floor {
     return surfaces.pointAt({.surface = 0, .triangle = 0, .u = 0.3f, .v = 0.3f, .t = 1.0f}, -view).reflector;
   }
 };
-Floor knownFloor(const gltf::Material& material, std::vector<MeasuredBrdf> brdfs = {}) {
+Floor knownFloor(const gltf::Material& material) {
   Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 1)});
   auto& mesh = scene.meshes[0].primitives[0].mesh;
   mesh.tangents.assign(mesh.positions.size(), glm::vec4(1, 0, 0, 1));
-  scene.brdfs = std::move(brdfs);
   scene.materials = {material};
   return {std::move(*Surfaces::build(scene))};
 }
@@ -195,35 +193,6 @@ TEST(Brdf, TurnsItsLobeByRotationAndTexture) {
   const glm::mat3 frame = knownFloor(material).towards({0, 0, 1}).world_from_local;
   EXPECT_NEAR(std::abs(glm::dot(frame[0], glm::normalize(glm::vec3(1, 0, -1)))), 1.0f, 1e-6f);
   EXPECT_NEAR(glm::dot(frame[2], glm::vec3(0, 1, 0)), 1.0f, 1e-6f);
-}
-
-MeasuredBrdf measuredFile(const char* name) {
-  return *readMeasuredBrdf(testing::sharedFile(std::string("brdf/") + name));
-}
-gltf::Material measuredMaterial() {
-  gltf::Material material;
-  material.brdf = 0;
-  return material;
-}
-
-TEST(Brdf, OfAMeasurementIsTheWeighedMeanAndReciprocal) {
-  LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
-  for (const char* name : {"acryl_blue.brdf", "garnet_red.brdf"}) {
-    const MeasuredBrdf brdf = measuredFile(name);
-    const Floor floor = knownFloor(measuredMaterial(), {brdf});
-    for (int i = 0; i < 60; ++i) {
-      const glm::vec3 a = viewAt(0.3f + 0.011f * static_cast<float>(i), 2.4f * static_cast<float>(i)),
-                      b = viewAt(0.25f + 0.012f * static_cast<float>(i * 7 % 60),
-                                 1.3f * static_cast<float>(i));
-      const glm::dvec3 there = glm::dvec3(floor.towards(a).value(b)) / double{b.z},
-                       back = glm::dvec3(floor.towards(b).value(a)) / double{a.z};
-      const glm::dvec3 mean = testing::weighedMean(brdf, glm::dvec3(a), glm::dvec3(b));
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(there[c], back[c], 1e-4 * there[c] + 1e-6);
-        EXPECT_NEAR(there[c], mean[c], 0.01 * mean[c] + 1e-4) << name << " " << i;
-      }
-    }
-  }
 }
 
 }  // namespace

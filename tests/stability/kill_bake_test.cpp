@@ -102,9 +102,8 @@ class KilledBake : public testing::ProgramTest {
     int exit_code = -1;
     double cpu_s = 0.0, wall_s = 0.0;
   };
-  // Kills it as soon as `enough`, which takes the seconds since it began, says so, unless it ends before.
-  template <typename Enough>
-  Ended runUntil(const std::vector<std::string>& words, const Enough& enough) const {
+  // Kills it after so many seconds, unless it ends before.
+  Ended runFor(const std::vector<std::string>& words, double seconds) const {
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();
     const ::pid_t id = start(LAMBENT_PROGRAM, words);
@@ -113,7 +112,7 @@ class KilledBake : public testing::ProgramTest {
     ::rusage usage{};
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     while (::wait4(id, &status, ended.killed ? 0 : WNOHANG, &usage) == 0) {
-      if (enough(elapsed())) {
+      if (elapsed() >= seconds) {
         ::kill(id, SIGKILL);
         ended.killed = true;
       } else {
@@ -128,19 +127,6 @@ class KilledBake : public testing::ProgramTest {
     };
     ended.cpu_s = secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime);
     return ended;
-  }
-  Ended runFor(const std::vector<std::string>& words, double seconds) const {
-    return runUntil(words, [&](double elapsed) { return elapsed >= seconds; });
-  }
-  // Kills it once the cache has a file with this extension.
-  Ended runUntilThereIs(const char* extension, const std::vector<std::string>& words) const {
-    return runUntil(words, [&](double) {
-      std::error_code ignored;
-      for (std::filesystem::recursive_directory_iterator at(folder / "cache", ignored), end;
-           !ignored && at != end; at.increment(ignored))
-        if (at->path().extension() == extension) return true;
-      return false;
-    });
   }
   Ended runOut(const std::vector<std::string>& words) const { return runFor(words, 1e9); }
 };
@@ -196,32 +182,6 @@ TEST_F(KilledBake, AtRandomMomentsItComesToTheSameBytesAndLosesLittleWork) {
   RecordProperty("lost_of_killed", fmt::format("{:.3f}", lost_s / killed_cpu_s));
   fmt::print("{} kills, {} finished bakes of {:.1f} s of computing: {:.2f} s of {:.2f} s lost with a kill\n",
              kills, finished, whole.cpu_s, lost_s / kills, killed_cpu_s / kills);
-}
-
-TEST_F(KilledBake, ResumeFinishesWhatWasCutShortAndIsThenContent) {
-  const Ended whole = runOut(arguments("whole.lmb.glb", "whole-cache"));
-  ASSERT_EQ(whole.exit_code, 0) << bytesOf(log("err"));
-  ASSERT_TRUE(runUntilThereIs(".entry", arguments("killed.lmb.glb", "cache")).killed);
-  ASSERT_FALSE(std::filesystem::exists(folder / "killed.lmb.glb"));
-  const std::vector<std::string> resume = {"bake", "--resume", "--cache", (folder / "cache").string()};
-  const auto first = this->run(LAMBENT_PROGRAM, resume);
-  EXPECT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.err.find("killed.lmb.glb"), std::string::npos) << first.err;
-  EXPECT_EQ(bytesOf(folder / "killed.lmb.glb"), bytesOf(folder / "whole.lmb.glb"));
-  const auto second = this->run(LAMBENT_PROGRAM, resume);
-  EXPECT_EQ(second.exit_code, 0);
-  EXPECT_NE(second.err.find("no bake was cut short"), std::string::npos) << second.err;
-}
-
-TEST_F(KilledBake, ResumeGivesUpASceneThatIsGone) {
-  ASSERT_TRUE(runUntilThereIs(".json", arguments("killed.lmb.glb", "cache")).killed);
-  std::filesystem::remove(folder / "scene.glb");
-  const std::vector<std::string> resume = {"bake", "--resume", "--cache", (folder / "cache").string()};
-  const auto first = this->run(LAMBENT_PROGRAM, resume);
-  EXPECT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.err.find("scene.glb: is gone"), std::string::npos) << first.err;
-  const auto second = this->run(LAMBENT_PROGRAM, resume);
-  EXPECT_NE(second.err.find("no bake was cut short"), std::string::npos) << second.err;
 }
 
 }  // namespace lambent

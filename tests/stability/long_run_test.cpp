@@ -87,10 +87,10 @@ TEST_F(WorldTest, InALongRunNeitherMemoryNorObjectsOfTheDriverGrow) {
   for (; number < 6; ++number) round(number);
   const auto before = objectsOfTheDriver();
   const std::uint64_t bytes = residentBytes();
-  const std::size_t entities = stage.world.registry().entityCount();
+  const std::size_t entities = stage.world.registry().entities().size();
   for (; number < rounds && !HasFailure(); ++number) round(number);
   EXPECT_EQ(objectsOfTheDriver(), before);
-  EXPECT_EQ(stage.world.registry().entityCount(), entities);
+  EXPECT_EQ(stage.world.registry().entities().size(), entities);
   // The C library and the driver keep some of what was freed, whatever the number of rounds.
   constexpr std::uint64_t kSlack = std::uint64_t{16} << 20;
   EXPECT_LT(residentBytes(), bytes + kSlack);

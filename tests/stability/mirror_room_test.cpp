@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/surface/reflection_probes.hpp"
+#include "runtime/frame/frame_parts.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -51,7 +51,7 @@ TEST_F(MirrorRoom, ShowsTheWallThatTheRayMeetsAndNotTheOneInItsDirection) {
   // The mirrored ray meets the right wall 0.42 m before the mirror. From the middle of the room its direction
   // is one to the front wall.
   expectNear(show.patch({-0.3f, 0.1f, 0.45f}, {0.7f, 0.05f, -0.95f}), kRight, "aslant");
-  EXPECT_EQ(show.frame->kept<frame::ReflectionProbes>().places().size(), 1u);
+  EXPECT_EQ(show.frame->parts().probes.places().size(), 1u);
 }
 
 // A probe inside must not show its room to the other side of the walls, which have no thickness.
@@ -71,7 +71,7 @@ TEST_F(MirrorRoom, TheOutsideOfABoxWithoutALidMirrorsTheSky) {
   Show show(scene, {constantLight(1.0f)});
   const glm::vec3 eye(2.5f, 0.5f, 1.6f), target(0.2f, 0.1f, 1.0f);
   const glm::vec3 on = show.patch(eye, target);
-  EXPECT_FALSE(show.frame->kept<frame::ReflectionProbes>().places().empty());
+  EXPECT_FALSE(show.frame->parts().probes.places().empty());
   frame::FrameSettings settings = show.frame->settings();
   settings.reflection_probes = 0;
   ASSERT_TRUE(show.frame->setSettings(settings));
@@ -92,7 +92,7 @@ TEST_F(MirrorRoom, ABallUnderTheOpenSkyHasNoProbesAndTheSamePicture) {
   const glm::vec3 on = show.patch(eye, target);
   const auto& draws = show.world.residency().draws();
   EXPECT_TRUE(std::ranges::all_of(draws, &streaming::ResidentDraw::layered)) << "both are mirrors";
-  EXPECT_TRUE(show.frame->kept<frame::ReflectionProbes>().places().empty());
+  EXPECT_TRUE(show.frame->parts().probes.places().empty());
   frame::FrameSettings settings = show.frame->settings();
   settings.reflection_probes = 0;
   ASSERT_TRUE(show.frame->setSettings(settings));

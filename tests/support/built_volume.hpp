@@ -152,9 +152,9 @@ inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uin
       transfer::positionsOf(clusters.of_sample, static_cast<std::uint32_t>(clusters.codebook.clusters()));
   for (std::uint32_t& position : positions) position |= clusters.of_sample[position] << 16;
   const std::vector<std::byte> codes = volume.codes();
-  return {streaming::DensityChunk{group, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},
-          streaming::VoxelsChunk{group, volume.voxels()},
-          streaming::CodebookChunk{group, {}, {}, clusters.codebook, std::move(positions)}};
+  return {streaming::DensityChunk{{group}, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},
+          streaming::VoxelsChunk{{group}, volume.voxels()},
+          streaming::CodebookChunk{{group, {}, {}}, clusters.codebook, std::move(positions)}};
 }
 
 }  // namespace lambent::testing

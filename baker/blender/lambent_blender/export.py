@@ -11,7 +11,7 @@ from .child import Problem
 def scene_file(output: Path) -> Path:
     """Returns where the scene of a bundle is written.
 
-    It is the same place each time, so that a bake that was cancelled goes on, also by `lambent bake --resume`.
+    It is the same place each time, so that a bake that was cancelled goes on.
     """
     caches = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     name = output.name.removesuffix(".lmb.glb")

@@ -269,14 +269,6 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
   if (paths) paths->follow(out.sent);
 }
 
-VolumeBody::VolumeBody(March march, int order, const glm::vec3& bounds_min, const glm::vec3& bounds_max,
-                       bool scatters)
-    : march_(std::move(march)),
-      order_(order),
-      centre_(0.5f * (bounds_min + bounds_max)),
-      radius_(0.5f * glm::distance(bounds_min, bounds_max)),
-      scatters_(scatters) {}
-
 void VolumeBody::look(const glm::vec3& from, const DirectionPacket& along, std::size_t, bool with_light,
                       BodyLook& out) const {
   out.sends = out.backs = 0;
@@ -284,13 +276,12 @@ void VolumeBody::look(const glm::vec3& from, const DirectionPacket& along, std::
   std::array<float, 3 * sh::kMaxCoefficients> unwanted;
   const float far = glm::distance(from, centre_) + radius_;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
-    const bool keep = with_light && scatters_;
-    const auto row =
-        keep ? std::span(out.sent).subspan(k * row_size, row_size) : std::span(unwanted).first(row_size);
+    const auto row = with_light ? std::span(out.sent).subspan(k * row_size, row_size)
+                                : std::span(unwanted).first(row_size);
     std::fill(row.begin(), row.end(), 0.0f);
     const float through = march_(from, along[k], far, row);
     out.stopped[k] = 1.0f - std::clamp(through, 0.0f, 1.0f);
-    if (keep && std::any_of(row.begin(), row.end(), [](float value) { return value != 0.0f; }))
+    if (with_light && std::any_of(row.begin(), row.end(), [](float value) { return value != 0.0f; }))
       out.sends |= static_cast<std::uint16_t>(1u << k);
   }
 }

@@ -9,7 +9,10 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/neighborhood/light_change.hpp"
@@ -67,12 +70,15 @@ class VolumeBody : public Body {
   // Does what marchVolume() does with a baked volume (baker/effects/volume/volume.hpp).
   using March = std::function<float(const glm::vec3& origin, const glm::vec3& direction, float t_max,
                                     std::span<float> scattered)>;
-  // `order` is that of incident light. The bounds are those of the volume, in its group's frame. Without
-  // `scatters` it only stops light.
-  VolumeBody(March march, int order, const glm::vec3& bounds_min, const glm::vec3& bounds_max, bool scatters);
+  // `order` is that of incident light. The bounds are those of the volume, in its group's frame.
+  VolumeBody(March march, int order, const glm::vec3& bounds_min, const glm::vec3& bounds_max)
+      : march_(std::move(march)),
+        order_(order),
+        centre_(0.5f * (bounds_min + bounds_max)),
+        radius_(0.5f * glm::distance(bounds_min, bounds_max)) {}
 
   int order() const override { return order_; }
-  std::uint32_t channels() const override { return scatters_ ? 3 : 0; }
+  std::uint32_t channels() const override { return 3; }
   glm::vec3 centre() const override { return centre_; }
   float radius() const override { return radius_; }
   void look(const glm::vec3& from, const DirectionPacket& along, std::size_t first_ray, bool with_light,
@@ -83,7 +89,6 @@ class VolumeBody : public Body {
   int order_;
   glm::vec3 centre_;
   float radius_;
-  bool scatters_;
 };
 
 }  // namespace lambent::baker

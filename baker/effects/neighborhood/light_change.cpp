@@ -190,103 +190,63 @@ inline constexpr bool kPlainBytes<Back> = sizeof(Back) == 6 * sizeof(float);
 
 namespace {
 
-class Filler {
- public:
-  Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
-      : body_(body), directions_(directions), grid_(grid), change_(change) {}
-
-  // Traces rays from each point; `backs` receives the nearest back for points inside.
-  std::optional<StageFigures> look(std::vector<Back>& backs, const BakeContext& context) {
-    const auto compute = [&](std::size_t begin, std::size_t end) {
-      PointChange point(body_, directions_, change_.shape);
-      for (std::size_t p = begin; p < end; ++p) {
-        point.look(grid_.point(p));
-        change_.outside[p] = !point.inside();
-        if (point.inside()) backs[p] = {point.nearestPoint(), point.nearestNormal()};
-        store(point.visibility(), change_.visibility, p);
-        store(point.bounced(), change_.bounced, p);
+bool besideOutside(const GridPlacement& grid, const std::vector<std::uint8_t>& outside, std::size_t p) {
+  const glm::ivec3 size(grid.size);
+  const auto index = static_cast<int>(p);
+  const glm::ivec3 at(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const glm::ivec3 other = glm::clamp(at + glm::ivec3(x, y, z), glm::ivec3(0), size - 1);
+        if (outside[static_cast<std::size_t>(other.x + size.x * (other.y + size.y * other.z))]) return true;
       }
-    };
-    return runStage({.name = "neighborhood",
-                     .unit = "points",
-                     .count = grid_.count(),
-                     .grain = kGridPointsPerRange,
-                     .writes = {rowsOf(change_.outside), rowsOf(backs),
-                                rowsOf(change_.visibility, change_.shape.visibilitySize()),
-                                rowsOf(change_.bounced, change_.shape.bouncedSize())},
-                     .compute = compute},
-                    context);
-  }
+  return false;
+}
 
-  // Continues the values to points inside that are beside points outside. Sets known[p] to 1 if that was
-  // possible.
-  bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
-                      const std::stop_token& stop) {
-    std::vector<std::size_t> border;
-    for (std::size_t p = 0; p < grid_.count(); ++p)
-      if (!change_.outside[p] && besideOutside(p)) border.push_back(p);
-    return parallelRanges(border.size(), kGridPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
-      PointChange on(body_, directions_, change_.shape), before(body_, directions_, change_.shape);
-      for (std::size_t b = begin; b < end; ++b) {
-        const std::size_t p = border[b];
-        const glm::vec3 spacing = grid_.spacing();
-        const float least = kOnSurface * std::min({spacing.x, spacing.y, spacing.z});
-        on.look(backs[p].point + least * backs[p].normal);
-        if (on.inside()) continue;
-        const float behind = glm::distance(backs[p].point, grid_.point(p));
-        before.look(backs[p].point + std::max(behind, least) * backs[p].normal);
-        continued(on.visibility(), before.visibility(), before.inside(), change_.visibility, p);
-        continued(on.bounced(), before.bounced(), before.inside(), change_.bounced, p);
-        known[p] = 1;
-      }
-    });
-  }
+// Continues the values to points inside that are beside points outside. Sets known[p] to 1 if that was
+// possible. Returns false if stopped.
+bool continueInside(const Body& body, const CapDirections& directions, const GridPlacement& grid,
+                    const std::vector<Back>& backs, std::vector<std::uint8_t>& known, GridChange& change,
+                    const std::stop_token& stop) {
+  std::vector<std::size_t> border;
+  for (std::size_t p = 0; p < grid.count(); ++p)
+    if (!change.outside[p] && besideOutside(grid, change.outside, p)) border.push_back(p);
+  return parallelRanges(border.size(), kGridPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    PointChange on(body, directions, change.shape), before(body, directions, change.shape);
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::size_t p = border[b];
+      const glm::vec3 spacing = grid.spacing();
+      const float least = kOnSurface * std::min({spacing.x, spacing.y, spacing.z});
+      on.look(backs[p].point + least * backs[p].normal);
+      if (on.inside()) continue;
+      const float behind = glm::distance(backs[p].point, grid.point(p));
+      before.look(backs[p].point + std::max(behind, least) * backs[p].normal);
+      const auto put = [&](std::span<const float> is, std::span<const float> was, std::vector<float>& all) {
+        for (std::size_t i = 0; i < is.size(); ++i)
+          all[p * is.size() + i] = before.inside() ? is[i] : 2.0f * is[i] - was[i];
+      };
+      put(on.visibility(), before.visibility(), change.visibility);
+      put(on.bounced(), before.bounced(), change.bounced);
+      known[p] = 1;
+    }
+  });
+}
 
-  void fillRest(const std::vector<std::uint8_t>& known) {
-    const auto size = grid_.size;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    const std::size_t strides[3] = {1, size.x, std::size_t{size.x} * size.y};
-    for (std::size_t p = 0; p < grid_.count(); ++p)
-      for (int axis = 0; axis < 3; ++axis) {
-        if (p / strides[axis] % size[axis] + 1 == size[axis]) continue;
-        const std::size_t q = p + strides[axis];
-        if (!known[p] || !known[q])
-          edges.emplace_back(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q));
-      }
-    if (edges.empty()) return;
-    fillFromNeighbours(edges, known, 0, change_.shape.visibilitySize(), change_.visibility);
-    fillFromNeighbours(edges, known, 0, change_.shape.bouncedSize(), change_.bounced);
-  }
-
- private:
-  static void store(std::span<const float> values, std::vector<float>& all, std::size_t point) {
-    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(point * values.size()));
-  }
-  static void continued(std::span<const float> on, std::span<const float> before, bool only_on,
-                        std::vector<float>& all, std::size_t point) {
-    for (std::size_t i = 0; i < on.size(); ++i)
-      all[point * on.size() + i] = only_on ? on[i] : 2.0f * on[i] - before[i];
-  }
-
-  bool besideOutside(std::size_t p) const {
-    const glm::ivec3 size(grid_.size);
-    const auto index = static_cast<int>(p);
-    const glm::ivec3 at(index % size.x, index / size.x % size.y, index / (size.x * size.y));
-    for (int z = -1; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          const glm::ivec3 other = glm::clamp(at + glm::ivec3(x, y, z), glm::ivec3(0), size - 1);
-          if (change_.outside[static_cast<std::size_t>(other.x + size.x * (other.y + size.y * other.z))])
-            return true;
-        }
-    return false;
-  }
-
-  const Body& body_;
-  const CapDirections& directions_;
-  const GridPlacement& grid_;
-  GridChange& change_;
-};
+void fillRest(const GridPlacement& grid, const std::vector<std::uint8_t>& known, GridChange& change) {
+  const auto size = grid.size;
+  SampleEdges edges;
+  const std::size_t strides[3] = {1, size.x, std::size_t{size.x} * size.y};
+  for (std::size_t p = 0; p < grid.count(); ++p)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p / strides[axis] % size[axis] + 1 == size[axis]) continue;
+      const std::size_t q = p + strides[axis];
+      if (!known[p] || !known[q])
+        edges.emplace_back(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q));
+    }
+  if (edges.empty()) return;
+  fillFromNeighbours(edges, known, 0, change.shape.visibilitySize(), change.visibility);
+  fillFromNeighbours(edges, known, 0, change.shape.bouncedSize(), change.bounced);
+}
 
 }  // namespace
 
@@ -297,20 +257,36 @@ std::size_t GridChange::insidePoints() const {
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
                                        std::size_t rays, const BakeContext& context) {
   const CapDirections directions(rays);
-  GridChange change;
-  change.shape = shape;
-  change.visibility.resize(grid.count() * shape.visibilitySize());
-  change.bounced.resize(grid.count() * shape.bouncedSize());
-  change.outside.resize(grid.count());
-  Filler filler(body, directions, grid, change);
-  std::vector<Back> backs(grid.count());
-  const auto looked = filler.look(backs, context);
+  GridChange change{.shape = shape,
+                    .visibility = std::vector<float>(grid.count() * shape.visibilitySize()),
+                    .bounced = std::vector<float>(grid.count() * shape.bouncedSize()),
+                    .outside = std::vector<std::uint8_t>(grid.count())};
+  std::vector<Back> backs(grid.count());  // the nearest, of points inside
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    PointChange point(body, directions, shape);
+    for (std::size_t p = begin; p < end; ++p) {
+      point.look(grid.point(p));
+      change.outside[p] = !point.inside();
+      if (point.inside()) backs[p] = {point.nearestPoint(), point.nearestNormal()};
+      std::ranges::copy(point.visibility(), &change.visibility[p * shape.visibilitySize()]);
+      if (shape.channels > 0) std::ranges::copy(point.bounced(), &change.bounced[p * shape.bouncedSize()]);
+    }
+  };
+  const auto looked = runStage(
+      {.name = "neighborhood",
+       .unit = "points",
+       .count = grid.count(),
+       .grain = kGridPointsPerRange,
+       .writes = {rowsOf(change.outside), rowsOf(backs), rowsOf(change.visibility, shape.visibilitySize()),
+                  rowsOf(change.bounced, shape.bouncedSize())},
+       .compute = compute},
+      context);
   if (!looked) return std::nullopt;
   change.rays = looked->computed * directions.size();
   change.rays_kept = looked->found * directions.size();
   std::vector<std::uint8_t> known = change.outside;
-  if (!filler.continueInside(backs, known, context.stop)) return std::nullopt;
-  filler.fillRest(known);
+  if (!continueInside(body, directions, grid, backs, known, change, context.stop)) return std::nullopt;
+  fillRest(grid, known, change);
   return change;
 }
 

@@ -18,7 +18,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/transport/samples.hpp"

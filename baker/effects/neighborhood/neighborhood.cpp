@@ -27,6 +27,9 @@ constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt
 // A looser bound changes nothing while all the components that are looked for miss it. One just above their
 // error makes codes smaller, and soon by much.
 constexpr double kBeyondReached = 1.1, kLooserBeyond = 1.2;
+// Bound on the error at a point relative to the change there, for points where the change is above a share of
+// irradiance, and for most of those points.
+constexpr double kOfChange = 0.05, kWhereChanged = 0.02, kPointsWithin = 0.99;
 constexpr int kQuickLevel = 3;  // of zstd; the bundle's payloads are compressed better
 
 double bytesOf(const std::vector<CodedTransfer>& coded) {
@@ -83,9 +86,9 @@ class CellCoder {
     return sends_ ? double{coded[1].error} / ofPart(bound) : 0.0;
   }
 
-  // Returns the error relative to the change that this share of the points with more change than `where` stay
-  // below, or 0 if there are no such points.
-  double changeError(const std::vector<CodedTransfer>& coded, double where, double share) const {
+  // Returns the error relative to the change that kPointsWithin of the points with more change than
+  // kWhereChanged stay below, or 0 if there are no such points.
+  double changeError(const std::vector<CodedTransfer>& coded) const {
     std::vector<float> wrong_visibility = decodeTransfer(coded[0]), wrong_bounced;
     for (std::size_t i = 0; i < wrong_visibility.size(); ++i) wrong_visibility[i] -= visibility_[i];
     if (sends_) {
@@ -101,14 +104,14 @@ class CellCoder {
                                        : std::span<const float>());
         };
         const double change = of(visibility_, bounced_);
-        if (change > where) ratios[p] = of(wrong_visibility, wrong_bounced) / change;
+        if (change > kWhereChanged) ratios[p] = of(wrong_visibility, wrong_bounced) / change;
       }
     });
     std::erase_if(ratios, [](double ratio) { return ratio < 0.0; });
     if (ratios.empty()) return 0.0;
-    const auto at =
-        ratios.begin() + static_cast<std::ptrdiff_t>(std::min(share * static_cast<double>(ratios.size()),
-                                                              static_cast<double>(ratios.size() - 1)));
+    const auto at = ratios.begin() +
+                    static_cast<std::ptrdiff_t>(std::min(kPointsWithin * static_cast<double>(ratios.size()),
+                                                         static_cast<double>(ratios.size() - 1)));
     std::nth_element(ratios.begin(), at, ratios.end());
     return *at;
   }
@@ -149,12 +152,12 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
       const double bytes = bytesOf(coded);
       const bool fits = bytes <= most_bytes;
       if (!fits && attempt > 0 && looser == 1.0) break;  // the previous attempt stays
-      change_error = coder.changeError(coded, settings.where_changed, settings.points_within);
+      change_error = coder.changeError(coded);
       const double reached = coder.looserOf(coded, bound);
       cell.transfers = std::move(coded);
-      if (fits && (looser > 1.0 || change_error <= settings.of_change)) break;
+      if (fits && (looser > 1.0 || change_error <= kOfChange)) break;
       if (fits) {
-        bound *= std::min(kFiner, 0.95 * settings.of_change / change_error);
+        bound *= std::min(kFiner, 0.95 * kOfChange / change_error);
       } else if (reached > looser) {
         looser = kBeyondReached * reached;
         beyond_reached = true;
@@ -231,36 +234,6 @@ namespace {
 constexpr std::size_t kProbeRays = 256;
 constexpr int kLeastMatrixBands = 4;
 
-// Changed holds a grid and the change at its points. The grid is empty if nothing is to be baked.
-struct Changed {
-  std::optional<GridPlacement> grid;
-  std::optional<GridChange> change;
-};
-
-std::optional<Changed> changeAround(const Body& body, const NeighborhoodSettings& settings,
-                                    const ChangeShape& shape, const BakeContext& context) {
-  context.progress.begin("reach of the neighborhood");
-  const CapDirections probe_directions(kProbeRays);
-  PointChange probe(body, probe_directions, shape);
-  const ReceiverMeter meter(shape, settings.facing);
-  Changed out;
-  out.grid = placeGrid(settings.placement, [&](const glm::vec3& point) {
-    if (context.stopped()) return 0.0;
-    probe.look(point);
-    return meter.measure(probe.visibility(), probe.bounced());
-  });
-  if (context.stopped()) return std::nullopt;
-  if (!out.grid) return out;
-  out.change = changeOnGrid(body, *out.grid, shape, settings.rays, context.part("change"));
-  if (!out.change) return std::nullopt;
-  if (settings.fit_between_points) {
-    GridChange& change = *out.change;
-    fitBetweenPoints(*out.grid, change.outside, shape.visibilitySize(), change.visibility);
-    fitBetweenPoints(*out.grid, change.outside, shape.bouncedSize(), change.bounced);
-  }
-  return out;
-}
-
 }  // namespace
 
 bool findNeighborhood(const BakeContext& context, BakedAround& around) {
@@ -279,25 +252,36 @@ std::optional<BakedAround> bakeNeighborhood(const Body& body, const Neighborhood
                           .order_out = all_bands ? body.order() : kDiffuseBands,
                           .channels = body.channels()};
   if (!(body.radius() > 0.0f)) return out;
-  const auto changed = changeAround(body, settings, shape, context);
-  if (!changed) return std::nullopt;
-  if (!changed->grid) return out;
-  const GridPlacement& grid = *changed->grid;
+  context.progress.begin("reach of the neighborhood");
+  const CapDirections probe_directions(kProbeRays);
+  PointChange probe(body, probe_directions, shape);
+  const ReceiverMeter meter(shape, settings.facing);
+  const auto placed = placeGrid(settings.placement, [&](const glm::vec3& point) {
+    if (context.stopped()) return 0.0;
+    probe.look(point);
+    return meter.measure(probe.visibility(), probe.bounced());
+  });
+  if (context.stopped()) return std::nullopt;
+  if (!placed) return out;
+  const GridPlacement& grid = *placed;
+  auto change = changeOnGrid(body, grid, shape, settings.rays, context.part("change"));
+  if (!change) return std::nullopt;
+  if (settings.fit_between_points) {
+    fitBetweenPoints(grid, change->outside, shape.visibilitySize(), change->visibility);
+    fitBetweenPoints(grid, change->outside, shape.bouncedSize(), change->bounced);
+  }
   context.progress.begin("coding the neighborhood", grid.count(), "points");
   CachedCoding coding(context);
-  auto coded = codeChange(*changed->change, grid, settings.origin, settings.coding, coding, context.progress);
+  auto coded = codeChange(*change, grid, settings.origin, settings.coding, coding, context.progress);
   if (!coded) return std::nullopt;
-  out.figures = {.size = grid.size,
-                 .bounds_min = settings.origin + grid.box.low,
-                 .bounds_max = settings.origin + grid.box.high,
-                 .inside_points = changed->change->insidePoints(),
-                 .rays = changed->change->rays,
-                 .rays_kept = changed->change->rays_kept,
+  out.figures = {.inside_points = change->insidePoints(),
+                 .rays = change->rays,
+                 .rays_kept = change->rays_kept,
                  .error = coded->error,
                  .change_error = coded->change_error};
   out.grid = BakedNeighborhood{.size = grid.size,
-                               .bounds_min = out.figures.bounds_min,
-                               .bounds_max = out.figures.bounds_max,
+                               .bounds_min = settings.origin + grid.box.low,
+                               .bounds_max = settings.origin + grid.box.high,
                                .cells = std::move(coded->cells)};
   keepValue(context, out);
   coding.drop();

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/neighborhood/light_change.hpp"
@@ -23,9 +23,6 @@ namespace lambent::baker {
 
 struct ChangeCoding {
   double bound = 1e-3;  // RMS over a cell, relative to irradiance without the body; for both parts together
-  double of_change = 0.05;      // bound on the error at a point relative to the change there, ...
-  double where_changed = 0.02;  // ... for points where the change is above this share of irradiance ...
-  double points_within = 0.99;  // ... and for this share of those points
   // Limit that goes before the bounds above, as far as a few attempts reach it: 1.4 MB for 64 x 64 x 8
   // points. Highlights found by few rays are noise that the coder cannot predict.
   double most_bytes = 43.0;  // per point
@@ -34,7 +31,7 @@ struct ChangeCoding {
 struct CodedChange {
   std::vector<CodedCell> cells;
   double error = 0.0;         // RMS, as `bound`, of the worst cell
-  double change_error = 0.0;  // as `of_change`, of the worst cell
+  double change_error = 0.0;  // relative to the change at most points, of the worst cell
 };
 
 // `origin` is added to the points for the cells' bounds, and coded points to the running stage. Returns
@@ -81,12 +78,10 @@ struct NeighborhoodSettings {
 };
 
 struct NeighborhoodFigures {
-  glm::uvec3 size{0};
-  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
-  std::size_t inside_points = 0;                 // points inside the body, continued from outside
-  std::uint64_t rays = 0;                        // traced in this run
-  std::uint64_t rays_kept = 0;                   // rays that results of earlier runs saved
-  double error = 0.0, change_error = 0.0;        // as in CodedChange
+  std::size_t inside_points = 0;           // points inside the body, continued from outside
+  std::uint64_t rays = 0;                  // traced in this run
+  std::uint64_t rays_kept = 0;             // rays that results of earlier runs saved
+  double error = 0.0, change_error = 0.0;  // as in CodedChange
 };
 
 struct BakedAround {
@@ -95,10 +90,11 @@ struct BakedAround {
 };
 
 template <>
-inline constexpr auto kKeptMembers<NeighborhoodFigures> = std::tuple(
-    &NeighborhoodFigures::size, &NeighborhoodFigures::bounds_min, &NeighborhoodFigures::bounds_max,
-    &NeighborhoodFigures::inside_points, &NeighborhoodFigures::rays, &NeighborhoodFigures::rays_kept,
-    &NeighborhoodFigures::error, &NeighborhoodFigures::change_error);
+inline constexpr auto kKeptMembers<NeighborhoodFigures> = std::tuple(&NeighborhoodFigures::inside_points,
+                                                                     &NeighborhoodFigures::rays,
+                                                                     &NeighborhoodFigures::rays_kept,
+                                                                     &NeighborhoodFigures::error,
+                                                                     &NeighborhoodFigures::change_error);
 template <>
 inline constexpr auto kKeptMembers<BakedAround> = std::tuple(&BakedAround::grid, &BakedAround::figures);
 

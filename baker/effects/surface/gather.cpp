@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"

@@ -223,6 +223,11 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
+// Returns the number of even harmonics in so many bands.
+constexpr std::size_t evenHarmonicCount(int order) {
+  return static_cast<std::size_t>(order * (order + 1) / 2);
+}
+
 std::vector<std::uint16_t> evenHarmonics(int order) {
   std::vector<std::uint16_t> even;
   for (int l = 0; l < order; ++l)

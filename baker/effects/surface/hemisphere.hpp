@@ -88,11 +88,6 @@ class ProjectionTable {
 //                  of a lower order come first. They are orthogonal over the hemisphere, which makes exact
 //                  weights easy (docs/design/glossy.md, "Visibility").
 
-// Returns the number of even harmonics in so many bands.
-constexpr std::size_t evenHarmonicCount(int order) {
-  return static_cast<std::size_t>(order * (order + 1) / 2);
-}
-
 class Hemisphere {
  public:
   static Hemisphere forNormal(std::size_t rays, int order);

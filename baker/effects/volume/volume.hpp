@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/effects/volume/grids.hpp"
 #include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/bake_context.hpp"
@@ -19,10 +19,10 @@ namespace lambent::baker {
 // Computes the transfer of a volume. At each sample of its grid this is the mean radiance that arrives,
 //   T = (1/4pi) int L ds,   the medium's own albedo left out,
 // per coefficient of the light, both with single scattering alone (the light that the medium and the surfaces
-// around it let through) and with all scatterings (scatter_rows.hpp), which a linear solver computes to a
+// around it let through) and with all scatterings (isotropic.cpp), which a linear solver computes to a
 // relative residual of 1e-5. Surfaces block light; light that they reflect is not added
 // (docs/design/volumes.md). Where free paths are shorter than voxels, samples are not the values at voxel
-// centres, but those that interpolate best to the values at many places (fit_within_voxels.hpp).
+// centres, but those that interpolate best to the values at many places (isotropic.cpp).
 //
 // If the phase function is anisotropic (Henyey and Greenstein's, g not 0), bands of arriving radiance take
 // the place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm continues (literature 1.8).
@@ -48,7 +48,6 @@ inline int bandsOfPhase(float g, int order) {
 inline constexpr double kLargestAlbedo = 1.0 - 1e-7;
 
 inline constexpr std::size_t kLeastScatteringRays = 64;
-inline constexpr double kScatteringTolerance = 1e-5;
 inline constexpr std::size_t kRaysPerScatteringRay = 4;  // rays for unscattered per ray for scattered light
 
 struct VolumeSettings {

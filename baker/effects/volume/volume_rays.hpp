@@ -189,8 +189,6 @@ template <typename Chunk>
 class KeptChunks {
  public:
   KeptChunks(std::size_t chunks, std::uint64_t most_bytes) : chunks_(chunks), most_bytes_(most_bytes) {}
-  KeptChunks(KeptChunks&& other) noexcept
-      : chunks_(std::move(other.chunks_)), most_bytes_(other.most_bytes_), bytes_(other.bytes_.load()) {}
 
   // Keeps the chunk if there is room. May be called from any thread, once for each chunk.
   void offer(std::size_t index, Chunk&& chunk) {

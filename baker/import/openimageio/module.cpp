@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/vector_relational.hpp>
 
-namespace lambent::baker::openimageio {
+namespace lambent::baker {
 
 namespace {
 
@@ -36,8 +37,6 @@ Result<std::vector<std::uint8_t>> encode(const Pixels& picture, const std::strin
     return fail(subject, "cannot be encoded: " + (output ? output->geterror() : OIIO::geterror()));
   return bytes;
 }
-
-}  // namespace
 
 Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, const std::string& subject) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
@@ -77,8 +76,6 @@ Result<std::vector<std::uint8_t>> encodePng(const Pixels& picture, const std::st
 // Reads OpenVDB files as OpenImageIO presents them: a subimage for each grid, its "pixels" in tiles over the
 // box of all leaf nodes, and the full (display) window over the box of active voxels. Index coordinates are
 // whole numbers at voxel centres; openvdb:indextoworld maps them to the file's space.
-
-namespace {
 
 constexpr const char* kWriteAgain = "write it again as a fog volume of float values";
 
@@ -123,24 +120,17 @@ Result<DensityGrid> readVoxels(OIIO::ImageInput& input, const std::string& subje
   // The grid covers the box of active voxels, wherever that lies in what is stored.
   grid.size = glm::uvec3(size);
   grid.values.assign(static_cast<std::size_t>(size.x * size.y * size.z), 0.0f);
-  const glm::i64vec3 shift = first - stored_min;
-  const std::int64_t begin = std::max<std::int64_t>(0, -shift.x),
-                     end = std::min<std::int64_t>(size.x, stored.x - shift.x);
-  for (std::int64_t z = 0; z < size.z; ++z)
-    for (std::int64_t y = 0; y < size.y; ++y) {
-      const std::int64_t from_y = y + shift.y, from_z = z + shift.z;
-      if (from_y < 0 || from_z < 0 || from_y >= stored.y || from_z >= stored.z || begin >= end) continue;
-      const auto* row =
-          &all[static_cast<std::size_t>((from_z * stored.y + from_y) * stored.x + shift.x + begin)];
-      std::copy(row, row + (end - begin),
-                &grid.values[static_cast<std::size_t>((z * size.y + y) * size.x + begin)]);
-    }
+  std::size_t i = 0;
+  glm::i64vec3 at;  // in what is stored
+  for (at.z = first.z - stored_min.z; i < grid.values.size(); ++at.z)
+    for (at.y = first.y - stored_min.y; at.y < first.y - stored_min.y + size.y; ++at.y)
+      for (at.x = first.x - stored_min.x; at.x < first.x - stored_min.x + size.x; ++at.x, ++i)
+        if (glm::all(glm::greaterThanEqual(at, glm::i64vec3(0))) && glm::all(glm::lessThan(at, stored)))
+          grid.values[i] = all[static_cast<std::size_t>((at.z * stored.y + at.y) * stored.x + at.x)];
   return grid;
 }
 
-}  // namespace
-
-Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string& wanted) {
+Result<DensityGrid> readVdbGrid(const std::filesystem::path& file, const std::string& wanted) {
   const auto input = OIIO::ImageInput::open(file.string());
   if (!input) {
     const std::string why = OIIO::geterror();
@@ -161,12 +151,13 @@ Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string
   return readVoxels(*input, fmt::format("{}: grid \"{}\"", file.string(), name));
 }
 
-}  // namespace lambent::baker::openimageio
+}  // namespace
+
+}  // namespace lambent::baker
 
 extern "C" __attribute__((visibility("default"))) const lambent::baker::OpenImageIo lambent_openimageio;
 
-const lambent::baker::OpenImageIo lambent_openimageio = {
-    .decode = lambent::baker::openimageio::decode,
-    .encodeJpeg = lambent::baker::openimageio::encodeJpeg,
-    .encodePng = lambent::baker::openimageio::encodePng,
-    .readVdb = lambent::baker::openimageio::readVdb};
+const lambent::baker::OpenImageIo lambent_openimageio = {.decode = lambent::baker::decode,
+                                                         .encodeJpeg = lambent::baker::encodeJpeg,
+                                                         .encodePng = lambent::baker::encodePng,
+                                                         .readVdb = lambent::baker::readVdbGrid};

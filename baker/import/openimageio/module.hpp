@@ -39,13 +39,4 @@ struct OpenImageIo {
 // of its libraries is missing. It may be called from any thread.
 Result<const OpenImageIo*> openImageIo();
 
-// These functions are linked by the module alone.
-namespace openimageio {
-
-Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, const std::string& subject);
-Result<std::vector<std::uint8_t>> encodeJpeg(const Pixels& picture, int quality, const std::string& subject);
-Result<std::vector<std::uint8_t>> encodePng(const Pixels& picture, const std::string& subject);
-Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string& grid);
-
-}  // namespace openimageio
 }  // namespace lambent::baker

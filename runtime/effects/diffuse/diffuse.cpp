@@ -11,8 +11,8 @@
 
 namespace lambent::effects::diffuse {
 
-const gpu::FindText kDiffuseShaders[2] = {&embedded::lambent_effects_diffuse::find,
-                                          &embedded::lambent_transfer::find};
+constexpr gpu::FindText kDiffuseShaders[] = {&embedded::lambent_effects_diffuse::find,
+                                             &embedded::lambent_transfer::find};
 
 namespace {
 
@@ -44,7 +44,8 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
 
 }  // namespace
 
-Diffuse::Diffuse() : draws_table_("diffuse draws"), work_("diffuse vertices work") {}
+Diffuse::Diffuse()
+    : kernels_(kDiffuseShaders), draws_table_("diffuse draws"), work_("diffuse vertices work") {}
 
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             evaluate::TransferMode mode, const evaluate::Samples& samples,
@@ -55,7 +56,7 @@ Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::Gro
     draws_.clear();
     for (const streaming::ResidentDraw& draw : residency.draws())
       draws_.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
-    draws_table_.assign(std::span<const DrawRecord>(draws_));
+    draws_table_.assign(draws_);
     draws_changed_.follow(residency.draws(), &streaming::ResidentDraw::id);
   }
   draws_shaded_ = 0;
@@ -137,34 +138,32 @@ glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangl
 }  // namespace
 
 Proxies::Proxies()
-    : groups_table_("proxy groups"),
+    : kernels_(kDiffuseShaders),
+      groups_table_("proxy groups"),
       triangles_table_("proxy triangles"),
       entries_table_("proxy entries"),
       added_table_("proxy radiance from local lights"),
       radiance_("proxy radiance"),
       work_("proxy work") {}
 
-void Proxies::makeRecords(const streaming::ResidentGroup& group, Proxy& kept) {
-  kept.made = true;
+void Proxies::addRecords(const streaming::ResidentGroup& group) {
   const bundle::CaptureProxy& proxy = *group.proxy;
-  kept.triangles.reserve(proxy.triangles.size());
+  const auto first_entry = static_cast<std::uint32_t>(entries_.size());
   for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
     const glm::vec3 normal = normalOf(proxy, triangle);
-    kept.triangles.push_back(
-        {.normal = {normal.x, normal.y, normal.z},
-         .first_entry = triangle.first_entry,
-         .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
-         .entry_count = triangle.entry_count,
-         .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
-         .pad = {}});
+    triangles_.push_back({.normal = {normal.x, normal.y, normal.z},
+                          .first_entry = first_entry + triangle.first_entry,
+                          .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
+                          .entry_count = triangle.entry_count,
+                          .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
+                          .pad = {}});
   }
-  kept.entries.reserve(proxy.entries.size());
   for (const bundle::ProxyEntry& entry : proxy.entries) {
     const streaming::SampleStretch stretch = group.stretchOf(group.formOf(entry.sample));
-    kept.entries.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
-                            .sample_index = stretch.outputOf(entry.sample),
-                            .outputs = stretch.outputs,
-                            .pad = {}});
+    entries_.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
+                        .sample_index = stretch.outputOf(entry.sample),
+                        .outputs = stretch.outputs,
+                        .pad = {}});
   }
 }
 
@@ -175,25 +174,20 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
   kept_.follow(residency.groups(), &streaming::ResidentGroup::id);
   for (std::size_t g = 0; g < residency.groups().size(); ++g) {
     const streaming::ResidentGroup& group = residency.groups()[g];
-    Proxy& kept = kept_[g];
-    kept.written = false;
-    if (group.proxy && !kept.made) makeRecords(group, kept);
+    kept_[g].written = false;
     const auto first = static_cast<std::uint32_t>(triangles_.size());
-    const auto first_entry = static_cast<std::uint32_t>(entries_.size());
-    triangles_.insert(triangles_.end(), kept.triangles.begin(), kept.triangles.end());
-    for (std::size_t t = first; t < triangles_.size(); ++t) triangles_[t].first_entry += first_entry;
-    entries_.insert(entries_.end(), kept.entries.begin(), kept.entries.end());
+    if (group.proxy) addRecords(group);
     groups_.push_back({.first_triangle = first,
-                       .triangle_count = static_cast<std::uint32_t>(kept.triangles.size()),
+                       .triangle_count = static_cast<std::uint32_t>(triangles_.size()) - first,
                        .light = lights.firstOf(g),
                        .lamps = lights.lampsOf(g),
                        .order = group.order,
                        .lamp_count = group.light_columns,
                        .pad = {}});
   }
-  groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));
-  triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
-  entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
+  groups_table_.assign(groups_);
+  triangles_table_.assign(triangles_);
+  entries_table_.assign(entries_);
   radiance_.reserve(triangles_.size() * sizeof(glm::vec4));
   added_ = true;  // makes the table be written again
 }
@@ -208,8 +202,7 @@ void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& co
     for (std::size_t t = 0; t < std::min<std::size_t>(added[g].triangles.size(), groups_[g].triangle_count);
          ++t)
       values[groups_[g].first_triangle + t] = glm::vec4(added[g].triangles[t], 0.0f);
-  added_table_.assign(std::span<const glm::vec4>(values));
-  counters.uploaded_bytes += values.size() * sizeof(glm::vec4);
+  added_table_.assign(values, counters);
 }
 
 Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,

@@ -16,16 +16,12 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::diffuse {
-
-// The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kDiffuseShaders[2];
 
 class Diffuse {
  public:
@@ -48,7 +44,7 @@ class Diffuse {
                const evaluate::Samples& samples);
   Result<void> runTexels(streaming::Residency& residency, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_{kDiffuseShaders};
+  gpu::Programs kernels_;
   std::vector<DrawRecord> draws_;
   gpu::Table draws_table_;
   gpu::WorkList work_;
@@ -96,16 +92,12 @@ class Proxies {
     ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> changed;  // samples, light, added radiance
     std::uint64_t version = 0;
     bool written = false;  // whether the table holds it where it stands now
-    // The proxy's records by themselves, with entries counted from 0. They are made when the proxy arrives.
-    bool made = false;
-    std::vector<ProxyTriangleRecord> triangles;
-    std::vector<ProxyEntryRecord> entries;
   };
-  static void makeRecords(const streaming::ResidentGroup& group, Proxy& kept);
+  void addRecords(const streaming::ResidentGroup& group);
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
   void writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_{kDiffuseShaders};
+  gpu::Programs kernels_;
   std::vector<ProxyGroupRecord> groups_;  // indexed by group of the residency
   std::vector<ProxyTriangleRecord> triangles_;
   std::vector<ProxyEntryRecord> entries_;

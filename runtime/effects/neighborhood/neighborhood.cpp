@@ -16,8 +16,8 @@
 
 namespace lambent::effects::neighborhood {
 
-const gpu::FindText kNeighborhoodShaders[2] = {&embedded::lambent_effects_neighborhood::find,
-                                               &embedded::lambent_transfer::find};
+constexpr gpu::FindText kNeighborhoodShaders[] = {&embedded::lambent_effects_neighborhood::find,
+                                                  &embedded::lambent_transfer::find};
 
 AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_side) {
   AtlasLayout layout;
@@ -109,7 +109,8 @@ float scaleOf(const lighting::GroupLights& lights, const streaming::ResidentGrou
 
 }  // namespace
 
-Neighborhood::Neighborhood() : writes_("neighborhood writes"), work_("neighborhood work") {}
+Neighborhood::Neighborhood()
+    : kernels_(kNeighborhoodShaders), writes_("neighborhood writes"), work_("neighborhood work") {}
 
 void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency& residency) {
   const auto same = [](const Grid& a, const Grid& b) {
@@ -177,8 +178,7 @@ Result<void> Neighborhood::update(streaming::Residency& residency, const lightin
 }
 
 Result<void> Neighborhood::write(streaming::Residency& residency, gpu::Counters& counters) {
-  writes_.assign(std::span<const WriteRecord>(records_));
-  counters.uploaded_bytes += records_.size() * sizeof(WriteRecord);
+  writes_.assign(records_, counters);
   writes_.bindStorage(kBindWrites);
   glBindImageTexture(kImageAtlas, atlas_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
   return evaluate::run(
@@ -247,7 +247,8 @@ bool hasTransfer(const streaming::Residency& residency, std::uint32_t index, std
 }
 
 VertexReceivers::VertexReceivers()
-    : change_("radiance that bodies around change"),
+    : kernels_(kNeighborhoodShaders),
+      change_("radiance that bodies around change"),
       sample_places_("places of samples"),
       arrivals_("vertex arrivals"),
       transfers_("receivers' transfers"),
@@ -264,8 +265,8 @@ void VertexReceivers::dispatch(std::span<const Record> records, std::uint32_t la
     const auto some =
         records.subspan(first, std::min<std::size_t>(kRecordsPerDispatch, records.size() - first));
     std::ranges::copy(some, block.begin());
-    block_.assign(std::span<const Record>(block));
-    glBindBufferBase(GL_UNIFORM_BUFFER, kBindVertexBlock, block_.buffer().id());
+    block_.assign(block);
+    block_.bindUniform(kBindVertexBlock);
     glDispatchCompute(groupsFor(largest), static_cast<GLuint>(some.size()), 1);
     ++counters.dispatches;
     counters.uploaded_bytes += some.size_bytes();
@@ -387,11 +388,9 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
     for (const VertexDraw::From& from : draw->from)
       arrivals.push_back(describe(from, effect.grids()[from.grid]));
   }
-  arrivals_.assign(std::span<const VertexArrival>(arrivals));
-  transfers_.assign(std::span<const transfer::TransferRecord>(transfers));
-  planes_.assign(std::span<const std::uint32_t>(table.places));
-  counters.uploaded_bytes += arrivals.size() * sizeof(VertexArrival) +
-                             transfers.size() * sizeof(transfer::TransferRecord) + 4 * table.places.size();
+  arrivals_.assign(arrivals, counters);
+  transfers_.assign(transfers, counters);
+  planes_.assign(table.places, counters);
   effect.bind();
   arrivals_.bindStorage(kBindVertexArrivals);
   transfers_.bindStorage(kBindVertexTransfers);

@@ -20,16 +20,12 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::neighborhood {
-
-// The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kNeighborhoodShaders[2];
 
 // Lays out the grids of all bodies in one 3D texture. Each output of a grid is a slab with one texel per grid
 // point; slabs are stacked along z and continue in a neighbouring column when that is full. There is one
@@ -84,7 +80,7 @@ class Neighborhood {
 
   std::vector<Grid> grids_;
   std::vector<std::uint64_t> written_versions_;  // per grid, that of its points when written; 0: none
-  evaluate::Kernels kernels_{kNeighborhoodShaders};
+  gpu::Programs kernels_;
   gpu::Texture atlas_;
   glm::uvec3 atlas_size_{0};
   gpu::Table writes_;
@@ -146,7 +142,7 @@ class VertexReceivers {
   template <typename Record>
   void dispatch(std::span<const Record> records, std::uint32_t largest, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_{kNeighborhoodShaders};
+  gpu::Programs kernels_;
   std::map<std::uint32_t, std::uint32_t> words_;  // keyed by draw
   std::map<std::uint32_t, Places> places_;        // keyed by group
   std::map<std::uint32_t, DrawChanged> changed_;  // keyed by draw

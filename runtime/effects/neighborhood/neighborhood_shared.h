@@ -57,7 +57,7 @@ struct Arrival {
   mat3x4 body_from_group;
   GridPlace grid;
   uint whole;  // 1: the change counts for all light, key lights too, because this body has no shadow map for them
-  uint pad0, pad1, pad2;
+  uint pad[3];
 };
 
 struct Receiver {

@@ -15,7 +15,7 @@
 
 namespace lambent::effects::volume {
 
-const gpu::FindText kVolumeShaders[1] = {&embedded::lambent_effects_volume::find};
+constexpr gpu::FindText kVolumeShaders[] = {&embedded::lambent_effects_volume::find};
 
 static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
@@ -40,7 +40,10 @@ SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs) 
 }
 
 Volume::Volume(bool precise)
-    : precise_(precise), records_table_("volume cells"), work_("volume scatter work") {}
+    : precise_(precise),
+      kernels_(kVolumeShaders),
+      records_table_("volume cells"),
+      work_("volume scatter work") {}
 
 gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const {
   const glm::uvec3 size = slabLayoutOf(volume.grid.transfer_size, volume.outputs).texture_size;
@@ -103,8 +106,7 @@ Result<void> Volume::shade(streaming::Residency& residency, const ShadedLight& l
   if (residency.volumes().empty()) return {};
   collect(residency, light, mode, in_view);
   if (work_.empty()) return {};
-  records_table_.assign(std::span<const ScatterRecord>(records_));
-  counters.uploaded_bytes += records_.size() * sizeof(ScatterRecord);
+  records_table_.assign(records_, counters);
   light.lights.bindStorage(kBindLights);
   records_table_.bindStorage(kBindScatter);
   std::vector<gpu::Define> defines;
@@ -141,15 +143,8 @@ void storeRows(const glm::dmat4& affine, glm::vec4 (&rows)[3]) {
     for (int column = 0; column < 4; ++column) rows[row][column] = static_cast<float>(affine[column][row]);
 }
 
-Rectangle unite(const Rectangle& a, const Rectangle& b) {
-  const std::int32_t x = std::min(a.x, b.x), y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
-}
-
-Rectangle grown(const Rectangle& r, const spec::Size& picture) {
-  const std::int32_t x = std::max(r.x - 1, 0), y = std::max(r.y - 1, 0);
-  return {x, y, std::min(r.x + r.width + 1, static_cast<std::int32_t>(picture.width)) - x,
-          std::min(r.y + r.height + 1, static_cast<std::int32_t>(picture.height)) - y};
+void scissor(const Rectangle& area) {
+  glScissor(area.first.x, area.first.y, area.end.x - area.first.x, area.end.y - area.first.y);
 }
 
 bool holdsAnything(const streaming::ResidentVolume& volume) {
@@ -183,8 +178,6 @@ std::optional<MarchRecord> describeMarch(const streaming::ResidentVolume& volume
 }
 
 Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, const spec::Size& picture) {
-  const Rectangle all{0, 0, static_cast<std::int32_t>(picture.width),
-                      static_cast<std::int32_t>(picture.height)};
   glm::vec2 low(1.0f), high(-1.0f);
   bool beyond_near = true, beyond_far = true;
   for (int corner = 0; corner < 8; ++corner) {
@@ -207,14 +200,14 @@ Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, c
   const glm::vec2 extent(static_cast<float>(picture.width), static_cast<float>(picture.height));
   const glm::vec2 first = glm::floor((0.5f + 0.5f * low) * extent - 1.0f);
   const glm::vec2 end = glm::ceil((0.5f + 0.5f * high) * extent + 1.0f);
-  const Rectangle grown{static_cast<std::int32_t>(std::max(first.x, 0.0f)),
-                        static_cast<std::int32_t>(std::max(first.y, 0.0f)), 0, 0};
-  return {grown.x, grown.y, std::min(static_cast<std::int32_t>(end.x), all.width) - grown.x,
-          std::min(static_cast<std::int32_t>(end.y), all.height) - grown.y};
+  return {glm::ivec2(glm::max(first, 0.0f)), glm::ivec2(glm::min(end, extent))};
 }
 
-March::March(const MarchOptions& options)
-    : options_(options), records_("marched volumes"), blocks_("blocks of volumes") {}
+March::March()
+    : programs_(kVolumeShaders),
+      records_("marched volumes"),
+      blocks_("blocks of volumes"),
+      no_vertices_("volumes") {}
 
 void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& counters) {
   std::vector<std::uint64_t> versions;
@@ -226,8 +219,7 @@ void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& c
     first_block_.push_back(static_cast<std::uint32_t>(blocks.size()));
     blocks.insert(blocks.end(), volume.block_maxima.begin(), volume.block_maxima.end());
   }
-  blocks_.assign(std::span<const float>(blocks));
-  counters.uploaded_bytes += blocks.size() * sizeof(float);
+  blocks_.assign(blocks, counters);
 }
 
 void March::makeTargets(const spec::Size& size) {
@@ -287,7 +279,8 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   for (const Item& item : items) {
     bands = std::max(bands, transfer::bandsOf(item.record.outputs));
     records.push_back(item.record);
-    rectangle = unite(rectangle, item.rectangle);
+    rectangle = {glm::min(rectangle.first, item.rectangle.first),
+                 glm::max(rectangle.end, item.rectangle.end)};
   }
   std::vector<gpu::Define> defines = {{"LAMBENT_VOLUMES", std::to_string(count)},
                                       {"LAMBENT_BANDS", std::to_string(bands)},
@@ -298,42 +291,30 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   if (Result<void> done = programs_.use({triangle, {GL_FRAGMENT_SHADER, "volume_march.frag"}}, defines);
       !done)
     return done;
-  records_.assign(std::span<const MarchRecord>(records));
-  counters.uploaded_bytes += records.size() * sizeof(MarchRecord);
+  records_.assign(records, counters);
   records_.bindStorage(kBindMarch);
   blocks_.bindStorage(kBindBlocks);
   for (std::uint32_t v = 0; v < count; ++v) {
     const std::uint32_t index = items[v].volume;
     residency.volumes()[index].density.bind(kUnitDensity + v);
     light.lightOf(index).bind(kUnitDensity + count + v);
-    glBindSampler(kUnitDensity + v, 0);
-    glBindSampler(kUnitDensity + count + v, 0);
   }
   picture.depth.bind(kUnitDepth);
-  glBindSampler(kUnitDepth, 0);
-  if (!no_vertices_) no_vertices_ = gpu::VertexArray("volumes");
-  glBindVertexArray(no_vertices_.id());
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
   // The rectangle is a pixel larger on each side than what is composited, because devices differ by that much
   // in how they clip pixels with several samples.
-  const Rectangle marched = grown(rectangle, picture.size);
-  glScissor(marched.x, marched.y, marched.width, marched.height);
+  scissor({glm::max(rectangle.first - 1, 0),
+           glm::min(rectangle.end + 1, glm::ivec2(picture.size.width, picture.size.height))});
   const glm::mat4& p = view.clip_from_view;
   const auto setProjection = [&] {
     glUniform4f(kScale, p[0][0], p[1][1], p[2][2], p[3][2]);
     glUniform1i(kPerspective, p[2][3] != 0.0f ? 1 : 0);
   };
-  const auto drawTriangle = [&] {
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    ++counters.draws;
-    ++counters.draw_calls;
-  };
   const auto blend = [&] {
     glBindFramebuffer(GL_FRAMEBUFFER, picture.color.id());
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gpu::blendPremultiplied();
   };
   if (samples > 0) {
     makeTargets(picture.size);
@@ -346,19 +327,20 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   glUniform4f(kOffset, p[2][0], p[2][1], p[3][0], p[3][1]);
   glUniform2f(kPictureSize, static_cast<float>(picture.size.width), static_cast<float>(picture.size.height));
   glUniform1f(kStepVoxels, options_.step_voxels);
-  drawTriangle();
+  no_vertices_.draw(3, counters);
   if (samples > 0) {
-    if (Result<void> done = programs_.use({triangle, {GL_FRAGMENT_SHADER, "volume_composite.frag"}},
-                                          {{"LAMBENT_SAMPLES", std::to_string(samples)}});
+    if (Result<void> done =
+            programs_.use({triangle, {GL_FRAGMENT_SHADER, "volume_march.frag"}},
+                          {{"LAMBENT_COMPOSITE", "1"}, {"LAMBENT_SAMPLES", std::to_string(samples)}});
         !done) {
       glDisable(GL_SCISSOR_TEST);
       return done;
     }
-    glScissor(rectangle.x, rectangle.y, rectangle.width, rectangle.height);
+    scissor(rectangle);
     blend();
     marched_.bind(kUnitMarched);
     setProjection();
-    drawTriangle();
+    no_vertices_.draw(3, counters);
   }
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);

@@ -16,7 +16,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/volume/volume_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -24,9 +23,6 @@
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::volume {
-
-// The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kVolumeShaders[1];
 
 using evaluate::TransferMode;
 
@@ -77,7 +73,7 @@ class Volume {
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;
-  evaluate::Kernels kernels_{kVolumeShaders};
+  gpu::Programs kernels_;
   KeyedState<Held> held_;  // indexed by volume of the residency
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;
@@ -110,10 +106,10 @@ struct Picture {
 std::optional<MarchRecord> describeMarch(const streaming::ResidentVolume& volume,
                                          const glm::mat4& world_from_group, const glm::mat4& view_from_world);
 
-// Describes a rectangle in texels from the bottom left.
+// Describes a rectangle in texels from the bottom left. `end` is not in it.
 struct Rectangle {
-  std::int32_t x = 0, y = 0, width = 0, height = 0;
-  bool empty() const { return width <= 0 || height <= 0; }
+  glm::ivec2 first{0}, end{0};
+  bool empty() const { return end.x <= first.x || end.y <= first.y; }
 };
 // Returns what the box of `size` voxels may cover of the picture; returns all of the picture if the box
 // reaches behind the eye.
@@ -127,9 +123,10 @@ Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, c
 // nothing is drawn, compiled or held. Render thread only. Fails if a shader does not compile on this device.
 class March {
  public:
-  explicit March(const MarchOptions& options);
-  void setStep(float step_voxels) { options_.step_voxels = step_voxels; }
+  March();
 
+  // Takes the options from the next draw() on.
+  void set(const MarchOptions& options) { options_ = options; }
   Result<void> draw(const streaming::Residency& residency, const Volume& light,
                     std::span<const PlacedVolume> volumes, const spec::View& view, const Picture& picture,
                     gpu::Counters& counters);
@@ -150,7 +147,7 @@ class March {
                          gpu::Counters& counters);
 
   MarchOptions options_;
-  evaluate::Kernels programs_{kVolumeShaders};
+  gpu::Programs programs_;
   gpu::Table records_, blocks_;
   std::vector<std::uint32_t> first_block_;                 // index: residency volume
   ChangeGate<std::vector<std::uint64_t>> blocks_changed_;  // versions of the volumes

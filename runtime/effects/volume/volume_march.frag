@@ -1,16 +1,51 @@
 // Marches each pixel's ray through the volumes, up to the surface behind them. With one sample per pixel it draws
-// into the picture itself. With several it stores what lies before the pixel's nearest and farthest sample, for
-// volume_composite.frag; so a ray is marched once, and edges in mist have no halo.
+// into the picture itself. With several it stores what lies before the pixel's nearest and farthest sample; so a ray is
+// marched once, and edges in mist have no halo. With LAMBENT_COMPOSITE it then composites that over the picture: each
+// sample takes what was gathered up to the pixel's nearest or farthest sample, whichever is closer to it.
 #include "volume_shared.h"
 
+layout(location = 0) uniform vec4 scale;  // of clip_from_view: [0][0], [1][1], [2][2], [3][2]
+layout(location = 3) uniform bool perspective;
+
+// Returns view-space z of a depth in clip space, -1..1. It is negative in front of the eye.
+float viewZ(float depth) { return perspective ? -scale.w / (depth + scale.z) : (depth - scale.w) / scale.z; }
+
+#ifdef LAMBENT_SAMPLES
+layout(binding = kUnitDepth) uniform sampler2DMS depth_picture;
+
+// Returns the depths of the pixel's nearest and farthest sample.
+vec2 depthsAt(ivec2 pixel) {
+  vec2 depths = vec2(1.0, 0.0);
+  for (int i = 0; i < LAMBENT_SAMPLES; ++i) {
+    float depth = texelFetch(depth_picture, pixel, i).r;
+    depths = vec2(min(depths.x, depth), max(depths.y, depth));
+  }
+  return depths;
+}
+#else
+layout(binding = kUnitDepth) uniform sampler2D depth_picture;
+#endif
+
+#ifdef LAMBENT_COMPOSITE
+layout(binding = kUnitMarched) uniform sampler2DArray marched;
+layout(location = 0) out vec4 color;
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec2 depths = depthsAt(pixel);
+  float own = viewZ(2.0 * texelFetch(depth_picture, pixel, gl_SampleID).r - 1.0);
+  bool before = viewZ(2.0 * depths.x - 1.0) - own <= own - viewZ(2.0 * depths.y - 1.0);
+  vec4 gathered = texelFetch(marched, ivec3(pixel, before ? 0 : 1), 0);
+  if (gathered == vec4(0.0, 0.0, 0.0, 1.0)) discard;  // leaves the pixel as it was
+  color = vec4(gathered.rgb, 1.0 - gathered.a);
+}
+#else
 layout(std430, binding = kBindMarch) readonly buffer March { MarchRecord records[]; };
 layout(std430, binding = kBindBlocks) readonly buffer Blocks { float blocks[]; };
 layout(binding = kUnitDensity) uniform sampler3D densities[LAMBENT_VOLUMES];
 layout(binding = kUnitDensity + LAMBENT_VOLUMES) uniform sampler3D lights[LAMBENT_VOLUMES];
-layout(location = 0) uniform vec4 scale;   // of clip_from_view: [0][0], [1][1], [2][2], [3][2]
-layout(location = 1) uniform vec4 offset;  // [2][0], [2][1], [3][0], [3][1]
+layout(location = 1) uniform vec4 offset;  // of clip_from_view: [2][0], [2][1], [3][0], [3][1]
 layout(location = 2) uniform vec2 picture_size;
-layout(location = 3) uniform bool perspective;
 layout(location = 4) uniform float step_voxels;
 
 #include "volume_march.glsl"
@@ -19,14 +54,9 @@ float densityAt(int v, vec3 place) { return textureLod(densities[v], place, 0.0)
 vec4 lightAt(int v, vec3 place) { return textureLod(lights[v], place, 0.0); }
 float blockMaximumAt(uint block) { return blocks[block]; }
 
-// Returns view-space z of a depth in clip space, -1..1. It is negative in front of the eye.
-float viewZ(float depth) { return perspective ? -scale.w / (depth + scale.z) : (depth - scale.w) / scale.z; }
-
 #if LAMBENT_STOPS == 1
-layout(binding = kUnitDepth) uniform sampler2D depth_picture;
 layout(location = 0) out vec4 color;
 #else
-layout(binding = kUnitDepth) uniform sampler2DMS depth_picture;
 layout(location = 0) out vec4 near;
 layout(location = 1) out vec4 far;
 #endif
@@ -55,14 +85,8 @@ void main() {
   float depth = texelFetch(depth_picture, pixel, 0).r;
   stops[0] = depth < 1.0 ? viewZ(2.0 * depth - 1.0) / direction.z : kInfinity;
 #else
-  float nearest = 1.0, farthest = 0.0;
-  for (int i = 0; i < LAMBENT_SAMPLES; ++i) {
-    float depth = texelFetch(depth_picture, pixel, i).r;
-    nearest = min(nearest, depth);
-    farthest = max(farthest, depth);
-  }
-  stops[0] = nearest < 1.0 ? viewZ(2.0 * nearest - 1.0) / direction.z : kInfinity;
-  stops[1] = farthest < 1.0 ? viewZ(2.0 * farthest - 1.0) / direction.z : kInfinity;
+  vec2 depths = depthsAt(pixel);
+  for (int i = 0; i < 2; ++i) stops[i] = depths[i] < 1.0 ? viewZ(2.0 * depths[i] - 1.0) / direction.z : kInfinity;
 #endif
   MarchRecord marched[LAMBENT_VOLUMES];
   VolumeRay rays[LAMBENT_VOLUMES];
@@ -85,3 +109,4 @@ void main() {
   far = vec4(clamp(gathered[1].rgb, -kLargest, kLargest), exp(-gathered[1].a));
 #endif
 }
+#endif

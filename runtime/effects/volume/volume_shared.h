@@ -27,7 +27,7 @@ LAMBENT_CONSTANT kImageLight = 0u;   // texture of a volume, written
 // These are bindings of the march.
 LAMBENT_CONSTANT kBindMarch = 0u;   // MarchRecord
 LAMBENT_CONSTANT kBindBlocks = 1u;  // largest density per block, for all volumes; 0 where a block is empty
-LAMBENT_CONSTANT kUnitDepth = 0u;   // depth of the picture; for volume_composite.frag what was marched
+LAMBENT_CONSTANT kUnitDepth = 0u;   // depth of the picture; of all samples, to composite what was marched
 LAMBENT_CONSTANT kUnitMarched = 1u;
 // These are the first texture units of density and light, one per volume. With depth they fit the sixteen units that
 // OpenGL 4.5 promises a stage.

@@ -1,28 +1,17 @@
-// The passes that finish a picture: exposure and colours, then overlays.
+// The passes that finish a picture: volumes, exposure and colours, then overlays.
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "runtime/base/change_gate.hpp"
-#include "runtime/debug/data_view.hpp"
-#include "runtime/debug/overlays.hpp"
-#include "runtime/draws/surface_record.hpp"
-#include "runtime/effects/volume/volume.hpp"
-#include "runtime/evaluate/samples.hpp"
+#include "runtime/frame/frame_parts.hpp"
 #include "runtime/frame/frame_pass.hpp"
-#include "runtime/tone_map/tone_mapper.hpp"
 
 namespace lambent::frame {
 
-// Brings the light in volumes into textures, and marches rays through the picture that look it up.
-
 namespace {
 
-using effects::volume::Volume;
-
 // Returns whether volumes are in the picture: other views show surfaces alone.
-bool anyShown(const FrameContext& frame) {
+bool volumesShown(const FrameContext& frame) {
   const SurfaceView shown = frame.options.view.view;
   return frame.settings().volumes && !frame.world.residency().volumes().empty() &&
          (shown == SurfaceView::Final || shown == SurfaceView::Wireframe);
@@ -41,179 +30,91 @@ std::vector<std::uint8_t> volumesInView(const FrameContext& frame) {
   return in_view;
 }
 
-class VolumePass final : public FramePass {
- public:
-  VolumePass(bool precise, Blackboard& board)
-      : FramePass({.name = "volume",
-                   .reads = resources<World, lighting::GroupLights, evaluate::Samples>(),
-                   .writes = resources<Volume>(),
-                   .causes = kLightCauses | Cause::View,
-                   .counts = {"volumes_shaded", "volume_slabs_written", "volumes_out_of_view"}}),
-        volume_(precise) {
-    board.offer(volume_);
-  }
-
-  bool due(const FrameContext& frame) override { return anyShown(frame); }
-  Result<void> update(FrameContext& frame) override {
-    // Nothing but the march reads the light of volumes.
-    const std::vector<std::uint8_t> in_view = volumesInView(frame);
-    Result<void> done = volume_.shade(frame.world.residency(),
-                                      {frame.read<lighting::GroupLights>(), frame.read<evaluate::Samples>()},
-                                      frame.settings().transfer, in_view, frame.counters());
-    if (frame.counters().dispatches > 0) frame.because("light");
-    frame.count("volumes_shaded", volume_.shadedLast().volumes);
-    frame.count("volume_slabs_written", volume_.shadedLast().slabs);
-    frame.count("volumes_out_of_view",
-                static_cast<std::uint64_t>(std::ranges::count(in_view, std::uint8_t{0})));
-    return done;
-  }
-
- private:
-  Volume volume_;
-};
-
-class MarchPass final : public FramePass {
- public:
-  MarchPass()
-      : FramePass({.name = "march",
-                   .reads = resources<World, Volume, PictureTargets>(),
-                   .writes = resources<PictureTargets>(),
-                   .causes = kPictureCauses,
-                   .counts = {"volumes_drawn"}}) {}
-
-  bool due(const FrameContext& frame) override { return anyShown(frame); }
-  Result<void> update(FrameContext& frame) override {
-    frame.because();
-    // Linear pictures, which are compared, take steps of half the length, without jitter.
-    const bool linear = frame.options.linear();
-    if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = !linear});
-    march_->setStep(frame.settings().march_step_voxels * (linear ? 0.5f : 1.0f));
-    const auto& volumes = frame.world.residency().volumes();
-    std::vector<effects::volume::PlacedVolume> placed;
-    for (std::uint32_t v = 0; v < volumes.size(); ++v)
-      if (frame.world.showsSurfaces(frame.world.residency().groups()[volumes[v].group].bundle))
-        placed.push_back({v, frame.world.worldFromGroup(volumes[v].group)});
-    Result<void> done = march_->draw(frame.world.residency(), frame.read<Volume>(), placed, *frame.view,
-                                     {frame.targets.hdrColor(), frame.targets.depth(), frame.targets.size()},
-                                     frame.counters());
-    frame.count("volumes_drawn", march_->drawnLast());
-    return done;
-  }
-
- private:
-  std::optional<effects::volume::March> march_;  // made once there is a volume
-};
-
-}  // namespace
-
-MadePass makeVolumePass(const PassSetup& setup) {
-  return std::make_unique<VolumePass>(/*precise=*/setup.options.linear(), setup.board);
+// Brings the light in volumes into textures. Nothing but the march reads it.
+Result<void> shadeVolumes(FrameContext& frame) {
+  effects::volume::Volume& volume = frame.parts.volume;
+  const std::vector<std::uint8_t> in_view = volumesInView(frame);
+  Result<void> done = volume.shade(frame.world.residency(), {frame.parts.group_lights, frame.parts.samples},
+                                   frame.settings().transfer, in_view, frame.counters());
+  if (frame.counters().dispatches > 0) frame.because("light");
+  frame.count("volumes_shaded", volume.shadedLast().volumes);
+  frame.count("volume_slabs_written", volume.shadedLast().slabs);
+  frame.count("volumes_out_of_view",
+              static_cast<std::uint64_t>(std::ranges::count(in_view, std::uint8_t{0})));
+  return done;
 }
 
-MadePass makeMarchPass(const PassSetup&) {
-  return std::make_unique<MarchPass>();
+// Marches rays through the picture, which gather what volumes scatter and absorb.
+Result<void> marchVolumes(FrameContext& frame) {
+  frame.because();
+  effects::volume::March& march = frame.parts.march;
+  // Linear pictures, which are compared, take steps of half the length, without jitter.
+  const bool linear = frame.options.linear();
+  march.set({.step_voxels = frame.settings().march_step_voxels * (linear ? 0.5f : 1.0f), .jitter = !linear});
+  const auto& volumes = frame.world.residency().volumes();
+  std::vector<effects::volume::PlacedVolume> placed;
+  for (std::uint32_t v = 0; v < volumes.size(); ++v)
+    if (frame.world.showsSurfaces(frame.world.residency().groups()[volumes[v].group].bundle))
+      placed.push_back({v, frame.world.worldFromGroup(volumes[v].group)});
+  Result<void> done =
+      march.draw(frame.world.residency(), frame.parts.volume, placed, *frame.view,
+                 {frame.targets.hdrColor(), frame.targets.depth(), frame.targets.size()}, frame.counters());
+  frame.count("volumes_drawn", march.drawnLast());
+  return done;
 }
 
-namespace {
+// The owner of shared targets maps tones itself.
+bool toneMapDue(const FrameContext& frame) {
+  return frame.options.destination != Destination::Shared;
+}
 
 // Turns linear radiance into the picture; counts negative pixels, and clamps them for the eye.
-class ToneMapPass final : public FramePass {
- public:
-  ToneMapPass(ToneMapper tone_mapper, Blackboard& board)
-      : FramePass({.name = "tone map",
-                   .reads = resources<PictureTargets>(),
-                   .writes = resources<PictureTargets, ToneMapper>(),
-                   .causes = kPictureCauses | Cause::Exposure}),
-        tone_mapper_(std::move(tone_mapper)) {
-    board.offer(tone_mapper_);
-  }
+Result<void> mapTones(FrameContext& frame) {
+  frame.targets.bindPicture();
+  frame.because();
+  return frame.parts.tone_mapper.run(frame.targets.hdr(), frame.settings().exposure_ev, frame.counters(),
+                                     !showsLight(frame.options.view.view));
+}
 
-  bool due(const FrameContext& frame) override {
-    return frame.options.destination != Destination::Shared;  // whose owner does it
-  }
-  Result<void> update(FrameContext& frame) override {
-    frame.targets.bindPicture();
-    frame.because();
-    tone_mapper_.run(frame.targets.hdr(), frame.settings().exposure_ev, frame.counters(),
-                     !showsLight(frame.options.view.view));
-    return {};
-  }
+bool showsWires(const FrameContext& frame) {
+  return frame.options.view.view == SurfaceView::Wireframe;
+}
 
- private:
-  ToneMapper tone_mapper_;
-};
+bool overlaysDue(const FrameContext& frame) {
+  const bool wires = showsWires(frame);
+  if (!wires) frame.parts.wires.reset();
+  const bool any = wires || frame.options.overlays.any();
+  if (!any) frame.parts.overlays.reset();
+  return any;
+}
 
 // Draws overlays and wires of triangles over the finished picture.
-class OverlayPass final : public FramePass {
- public:
-  OverlayPass()
-      : FramePass({.name = "overlays",
-                   .reads = resources<World, PictureTargets, LightPlan, lighting::GroupLights, Neighborhoods,
-                                      KeyShadows, ToneMapper>(),
-                   .writes = resources<PictureTargets>(),
-                   .causes = kPictureCauses}) {}
+Result<void> drawOverlays(FrameContext& frame) {
+  frame.because();
+  FrameParts& parts = frame.parts;
+  const bool linear = frame.options.linear(), wires = showsWires(frame);
+  if (parts.targets_changed.renew(frame.targets.version()) || !parts.overlays)
+    parts.overlays.emplace(frame.targets.depth(), frame.targets.size(), linear);
+  if (wires && !parts.wires) parts.wires.emplace(linear);
+  const OverlayScene scene{frame.world,         frame.environment, parts.plan, parts.group_lights,
+                           parts.neighborhoods, parts.tone_mapper, *frame.view};
+  DataView* const shown_wires = wires ? &*parts.wires : nullptr;
+  if (Result<void> done = parts.overlays->draw(frame.options.overlays, scene, shown_wires, frame.counters());
+      !done)
+    return done;
+  frame.targets.bindPicture();
+  return parts.overlays->layOver(frame.counters());
+}
 
-  bool due(const FrameContext& frame) override {
-    const bool wires = showsWires(frame);
-    if (!wires) wires_.reset();
-    const bool any = wires || frame.options.overlays.any();
-    if (!any) overlays_.reset();
-    return any;
-  }
-  Result<void> update(FrameContext& frame) override {
-    frame.because();
-    const bool wires = showsWires(frame);
-    if (Result<void> done = attach(frame); !done) return done;
-    if (wires && !wires_) wires_.emplace(frame.options.linear());
-    const auto drawWires = [&]() -> Result<void> {
-      if (!wires) return {};
-      return wires_->drawWires(frame.world, *frame.view, frame.counters());
-    };
-    const OverlayScene scene{frame.world,
-                             frame.environment,
-                             frame.read<LightPlan>(),
-                             frame.read<lighting::GroupLights>(),
-                             frame.read<Neighborhoods>(),
-                             frame.read<KeyShadows>(),
-                             frame.read<ToneMapper>(),
-                             *frame.view,
-                             frame.targets.size()};
-    if (Result<void> done = overlays_->draw(frame.options.overlays, scene, drawWires, frame.counters());
-        !done)
-      return done;
-    frame.targets.bindPicture();
-    overlays_->layOver(frame.counters());
-    return {};
-  }
-
- private:
-  static bool showsWires(const FrameContext& frame) {
-    return frame.options.view.view == SurfaceView::Wireframe;
-  }
-  Result<void> attach(const FrameContext& frame) {
-    if (!targets_.renew(frame.targets.version()) && overlays_) return {};
-    Result<Overlays> made = Overlays::create(frame.targets.hdr().desc().samples, frame.options.linear());
-    if (!made) return failAgain(made.error());
-    overlays_ = std::move(*made);
-    overlays_->attach(frame.targets.depth(), frame.targets.size());
-    return {};
-  }
-
-  std::optional<Overlays> overlays_;  // made while any are shown
-  std::optional<DataView> wires_;     // made while a view shows wires
-  ChangeGate<std::uint64_t> targets_;
-};
+constexpr FramePass kPicturePasses[] = {{"volume", kLightCauses | Cause::View, shadeVolumes, volumesShown},
+                                        {"march", kPictureCauses, marchVolumes, volumesShown},
+                                        {"tone map", kPictureCauses | Cause::Exposure, mapTones, toneMapDue},
+                                        {"overlays", kPictureCauses, drawOverlays, overlaysDue}};
 
 }  // namespace
 
-MadePass makeToneMapPass(const PassSetup& setup) {
-  Result<ToneMapper> made = ToneMapper::create(samplesOf(setup.options.output), setup.options.linear());
-  if (!made) return failAgain(made.error());
-  return std::make_unique<ToneMapPass>(std::move(*made), setup.board);
-}
-
-MadePass makeOverlayPass(const PassSetup&) {
-  return std::make_unique<OverlayPass>();
+std::span<const FramePass> picturePasses() {
+  return kPicturePasses;
 }
 
 }  // namespace lambent::frame

@@ -1,7 +1,5 @@
 // Tests what a bake says of the error of its pictures.
 
-#include "baker/bake/picture_error.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -203,7 +203,7 @@ class AddOn(unittest.TestCase):
         first = cancelled_at(0.1)
         self.assertRegex(self.state.message, r"^Cancelled at \d+%; the next bake goes on from there$")
         self.assertEqual(list(self.bundle.parent.iterdir()), [], "neither a bundle nor a part of one")
-        self.assertEqual(exports(), ["room.glb"], "lambent bake --resume finds the scene")
+        self.assertEqual(exports(), ["room.glb"], "the next bake finds the scene")
         self.assertLess(first, 0.1)
         self.assertGreaterEqual(cancelled_at(0.0), 0.1, "it goes on")
         bpy.context.scene.lambent.options = playground.FEW_RAYS

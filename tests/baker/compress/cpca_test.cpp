@@ -304,7 +304,7 @@ TEST(RadianceError, WeighsBandsAsLightDoes) {
   std::vector<float> truth(4, 0.0f), coded(4, 0.0f);
   truth[0] = 1.0f;
   coded = truth;
-  coded[2] = 0.1f;  // band 1, which carries 0.5085 of band 0's power (light_weights.hpp)
+  coded[2] = 0.1f;  // band 1, which carries 0.5085 of band 0's power (cpca.hpp)
   EXPECT_NEAR(radianceError(truth, coded, shape), 0.1 * std::sqrt(0.5085), 1e-6);
 }
 

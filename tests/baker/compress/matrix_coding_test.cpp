@@ -13,7 +13,6 @@
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/cpca_clusters.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/compress/light_weights.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "tests/support/heaps.hpp"

@@ -161,7 +161,7 @@ TEST(Volume, IsRefusedByWhatIsWrongWithIt) {
   EXPECT_EQ(says(json::object(), "names no file"), "");
   EXPECT_EQ(says({{"file", 3}}, "not a string"), "");
   EXPECT_EQ(says(json::array(), "not an object"), "");
-  EXPECT_EQ(says({{"file", "fog.nrrd"}}, "not a file"), "");
+  EXPECT_EQ(says({{"file", "fog.nrrd"}}, "no such file"), "");
   EXPECT_EQ(says({{"file", "fog.txt"}}, "neither .vdb nor .nrrd"), "");
   EXPECT_EQ(says({{"file", "../fog.nrrd"}}, "outside"), "");
   EXPECT_EQ(says({{"file", "https://example.com/fog.nrrd"}}, "not a file beside"), "");
@@ -195,7 +195,7 @@ TEST(Neighborhood, IsAskedForWithSizeAndExtentOrWithout) {
   EXPECT_EQ(scene.neighborhoods[0].extent, glm::vec3(0.0f));
 
   extras["lambent"]["neighborhood"] = {{"size", {64, 64, 1}}};
-  EXPECT_NE(refusal(writer, folder).find("not 2 to 256 points"), std::string::npos);
+  EXPECT_NE(refusal(writer, folder).find("not between 2 and 256"), std::string::npos);
   extras["lambent"]["neighborhood"] = {{"extent", {1, -1, 1}}};
   EXPECT_NE(refusal(writer, folder).find("extent"), std::string::npos);
 }

@@ -1,9 +1,8 @@
 // Tests what is said beforehand of a bake.
-#include "baker/pipeline/guess_seconds.hpp"
-
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

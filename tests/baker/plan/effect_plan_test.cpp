@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/effects/effect_list.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {
@@ -14,16 +13,15 @@ namespace {
 using testing::grid;
 using testing::sceneOf;
 
-bool leavesOut(const Scene& scene, const std::string& words,
-               std::span<const EffectEntry> effects = effectList()) {
-  const EffectPlan plan = makePlan(scene, effects);
+bool leavesOut(const Scene& scene, const std::string& words, const std::string& effects = "all") {
+  const EffectPlan plan = makePlan(scene, *effectsNamed(effects));
   return std::any_of(plan.left_out.begin(), plan.left_out.end(),
                      [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
 }
 
 TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
-  const EffectPlan plan = makePlan(sceneOf({grid({0, 0, 0}, 1.0f, 1)}), effectList());
-  ASSERT_EQ(plan.effects.size(), effectList().size());
+  const EffectPlan plan = makePlan(sceneOf({grid({0, 0, 0}, 1.0f, 1)}), *effectsNamed("all"));
+  ASSERT_EQ(plan.effects.size(), 4u);
   EXPECT_EQ(plan.effects[0].effect, "diffuse");
   EXPECT_TRUE(plan.effects[0].baked);
   EXPECT_NE(plan.effects[0].reason.find("1 draw"), std::string::npos);
@@ -34,7 +32,7 @@ TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
 
 TEST(EffectPlan, SaysWhatTheBakeWillNotShow) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 1, 0}, 1.0f, 1)});
-  const auto diffuse_alone = effectList().first(1);
+  const std::string diffuse_alone = "diffuse";
   EXPECT_FALSE(leavesOut(scene, "Metallic", diffuse_alone));
   scene.materials[0].metallic = 1.0f;
   EXPECT_TRUE(leavesOut(scene, "Metallic", diffuse_alone));

@@ -11,8 +11,6 @@
 
 #include "assets/shapes.hpp"
 #include "baker/jobs/parallel.hpp"
-#include "baker/proxy/shine.hpp"
-#include "baker/proxy/simplify.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

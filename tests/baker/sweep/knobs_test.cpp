@@ -1,5 +1,3 @@
-#include "baker/sweep/knobs.hpp"
-
 #include <iterator>
 #include <set>
 
@@ -9,6 +7,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lambent::baker {

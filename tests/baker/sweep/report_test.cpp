@@ -1,10 +1,9 @@
-#include "baker/sweep/report.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "baker/sweep/sweep.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -49,12 +48,13 @@ TEST(Pareto, ADifferenceWithinTheSpreadIsNoGain) {
 
 Measured measured(const std::string& knob, const std::string& value, double bake_s, double error) {
   const std::vector<std::string> asked = {knob + "=" + value};
-  Measured m{.setting = settingsOf({}, Quality::Draft, asked).value().back(),
-             .key = knob + value,
-             .bake = {.processor_seconds = bake_s, .stages = {{"direct light", bake_s}}, .bytes = 1000},
-             .picture = {.frame_ms = 5.0, .renderer = "a renderer"}};
-  m.picture.as_light_is = {.rms = error, .rms_spread = 0.001};
-  return m;
+  return {.setting = settingsOf({}, Quality::Draft, asked).value().back(),
+          .key = knob + value,
+          .bake = {{"processorSeconds", bake_s}, {"bytes", 1000}},
+          .picture = {{"frameMs", 5.0},
+                      {"renderer", "a renderer"},
+                      {"gpuBytes", 0},
+                      {"asLightIs", {{"rms", error}, {"rmsSpread", 0.001}}}}};
 }
 
 SweepResults someResults() {

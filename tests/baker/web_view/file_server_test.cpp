@@ -2,7 +2,7 @@
 #include "baker/web_view/file_server.hpp"
 
 #include <fstream>
-#include <optional>
+#include <future>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -20,16 +20,17 @@ class Server : public ::testing::Test {
     write("bundle.lmb.glb", bytes_);
     write("viewer.js", "let a;");
     write("secret.js", "let b;");
-    auto server = FileServer::bind({{"/bundle.lmb.glb", folder_.path() / "bundle.lmb.glb"},
-                                    {"/viewer/viewer.js", folder_.path() / "viewer.js"},
-                                    {"/gone.css", folder_.path() / "gone.css"}},
-                                   "/viewer/viewer.js?a=b", 0);
-    ASSERT_TRUE(server) << server.error().line();
-    server_.emplace(std::move(*server));
-    const std::string address = server_->address();
+    running_ = std::jthread([this](const std::stop_token& stop) {
+      ended_ = serveFiles(
+          {{"/bundle.lmb.glb", folder_.path() / "bundle.lmb.glb"},
+           {"/viewer/viewer.js", folder_.path() / "viewer.js"},
+           {"/gone.css", folder_.path() / "gone.css"}},
+          "/viewer/viewer.js?a=b", 0, [this](const std::string& address) { began_.set_value(address); },
+          stop);
+    });
+    const std::string address = began_.get_future().get();
     ASSERT_TRUE(address.starts_with("http://127.0.0.1:")) << address;
     port_ = std::stoi(address.substr(address.rfind(':') + 1));
-    running_ = std::jthread([this](const std::stop_token& stop) { ended_ = server_->run(stop); });
   }
   void TearDown() override {
     running_.request_stop();
@@ -48,8 +49,8 @@ class Server : public ::testing::Test {
 
   testing::TemporaryFolder folder_;
   std::string bytes_ = std::string(200'000, '\0');  // more than one chunk
-  std::optional<FileServer> server_;
   int port_ = 0;
+  std::promise<std::string> began_;
   Result<void> ended_;
   std::jthread running_;
 };
@@ -156,7 +157,7 @@ TEST_F(Server, IsForReadingOnly) {
 }
 
 TEST_F(Server, SaysThatAPortIsTaken) {
-  const auto second = FileServer::bind({}, "/", port_);
+  const auto second = serveFiles({}, "/", port_, [](const std::string&) {}, {});
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().line().find("127.0.0.1:" + std::to_string(port_)), std::string::npos)
       << second.error().line();

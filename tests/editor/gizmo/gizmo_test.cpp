@@ -203,19 +203,6 @@ TEST(Gizmo, ScalingFollowsThePointerAlongTheNodesOwnAxes) {
   }
 }
 
-TEST(Gizmo, ScalingAlongTheWorldsAxesStretchesTheWorldBelowAnyParent) {
-  for (const glm::mat4& parent : parents()) {
-    const GizmoTarget target = targetBelow(parent);
-    const glm::dmat4 before = worldOf(target, target.local);
-    const glm::dmat4 now =
-        worldOf(target, scaledInWorld(target, place(target, target.local), {1.0, 3.0, 1.0}));
-    for (int column = 0; column < 3; ++column) {
-      const glm::dvec3 expected = glm::dvec3(1.0, 3.0, 1.0) * glm::dvec3(before[column]);
-      EXPECT_LT(glm::length(glm::dvec3(now[column]) - expected), 1e-5 * glm::length(expected));
-    }
-  }
-}
-
 TEST(Gizmo, SeveralTargetsTurnAboutTheLast) {
   std::vector<GizmoTarget> targets(2);
   targets[0].local.translation = {1.0f, 0.0f, 0.0f};

@@ -93,7 +93,7 @@ state
   EXPECT_EQ(played.answer("state")["redo"], "Redo Name of empty");
 }
 
-TEST_F(EditorProgram, ChoosesAUnitAndRunsACommandOfThePalette) {
+TEST_F(EditorProgram, ChoosesAUnitAndRunsACommandOfTheMenuOfATreeRow) {
   const Played played = play(R"(
 create-point
 set Light.strength 10
@@ -105,11 +105,7 @@ wait frames 3
 click inspector.Light.unit.lm
 wait frames 3
 get Light.strength
-key Ctrl+P
-wait frames 3
-type "camera"
-wait frames 3
-click palette.create-camera
+create-camera
 wait frames 3
 state
 right-click scene.camera

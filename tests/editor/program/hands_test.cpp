@@ -31,11 +31,6 @@ type 6
 key Enter
 get a:Transform.translation
 get b:Transform.translation
-click inspector.Transform.translation.y
-type "+=1"
-key Enter
-get a:Transform.translation
-get b:Transform.translation
 state
 expect /undo "Undo Position of 2 entities"
 undo
@@ -47,7 +42,7 @@ wait frames 3
 marks
 )");
   const std::vector<json> a = played.all("get a:Transform"), b = played.all("get b:Transform");
-  ASSERT_EQ(a.size(), 4u);
+  ASSERT_EQ(a.size(), 3u);
   EXPECT_NEAR(a[0][1].get<double>(), 1.4, 1e-4);
   EXPECT_NEAR(b[0][1].get<double>(), 3.4, 1e-4) << "shifted by the same";
   EXPECT_GT(played.answer("get a:Light").get<double>(), 10.5);
@@ -57,15 +52,14 @@ marks
   EXPECT_EQ(a[1][0], 6.0);
   EXPECT_EQ(b[1][0], 6.0) << "what is typed sets all";
   EXPECT_EQ(b[1][1], b[0][1]) << "and leaves the other numbers as they differ";
-  EXPECT_NEAR(b[2][1].get<double>(), 4.4, 1e-4) << "a sum is added to each";
-  EXPECT_EQ(a[3], a[1]) << "one step";
-  EXPECT_EQ(b[3], b[1]);
+  EXPECT_EQ(a[2], a[0]) << "one step";
+  EXPECT_EQ(b[2], b[0]);
   const std::string marks = played.answer("marks").dump();
   EXPECT_NE(marks.find("inspector.Transform.translation"), std::string::npos);
   EXPECT_EQ(marks.find("inspector.Light"), std::string::npos) << "not all have a light";
 }
 
-TEST_F(EditorProgram, DragsNumbersAndHandlesFinerAndInSteps) {
+TEST_F(EditorProgram, DragsNumbersAndHandlesFinerAndHandlesInSteps) {
   const Played played = play(R"(
 create-empty 0.1 0 0
 panel Inspector
@@ -75,8 +69,6 @@ get Transform.translation
 drag inspector.Transform.translation.x 100 0 Shift
 get Transform.translation
 drag inspector.Transform.translation.x 30 0 Alt
-get Transform.translation
-drag inspector.Transform.translation.x 30 0 Ctrl
 get Transform.translation
 set Transform.translation 0 0 0
 wait frames 3
@@ -92,16 +84,15 @@ drag gizmo.y 0 -60 Ctrl
 get Transform.translation
 )");
   const std::vector<json> places = played.all("get");
-  ASSERT_EQ(places.size(), 7u);
+  ASSERT_EQ(places.size(), 6u);
   const auto x = [&](std::size_t i) { return places[i][0].get<double>(); };
   const auto y = [&](std::size_t i) { return places[i][1].get<double>(); };
   EXPECT_NEAR(x(0), 1.1, 1e-4);
   EXPECT_NEAR(x(1) - x(0), 0.1, 1e-4);
   EXPECT_NEAR(x(2) - x(1), 3.0, 1e-4);
-  EXPECT_EQ(x(3), 4.5) << "a multiple of the step of 0.25 m";
-  EXPECT_NEAR(y(5), 0.1 * y(4), 0.02 * y(4));
-  EXPECT_NEAR(4.0 * y(6), std::round(4.0 * y(6)), 1e-4);
-  EXPECT_NEAR(y(6), y(4), 0.126);
+  EXPECT_NEAR(y(4), 0.1 * y(3), 0.02 * y(3));
+  EXPECT_NEAR(4.0 * y(5), std::round(4.0 * y(5)), 1e-4);
+  EXPECT_NEAR(y(5), y(3), 0.126);
 }
 
 TEST_F(EditorProgram, SlidesTheNumberOfKeyLightsAwayFromAutoAndBack) {
@@ -175,20 +166,10 @@ key F11
   }
 }
 
-// Notices must not lie over what panels say.
-TEST_F(EditorProgram, ShowsToastsInTheView) {
-  for (const char* scale : {"1", "2"}) {
-    const Played played =
-        play(fmt::format("drop {}\nwait frames 5\nwhere toasts\nwhere viewport\n", path("lost.glb")),
-             {"--scale", scale, "--fresh"});
-    const json &toasts = played.answer("where toasts"), &view = played.answer("where viewport");
-    const auto end = [](const json& area, const char* at, const char* extent) {
-      return area[at].get<double>() + area[extent].get<double>();
-    };
-    EXPECT_GE(toasts["x"], view["x"]) << "at scale " << scale;
-    EXPECT_LE(end(toasts, "x", "width"), end(view, "x", "width"));
-    EXPECT_LE(end(toasts, "y", "height"), end(view, "y", "height") + 1.0) << "to a pixel";
-  }
+TEST_F(EditorProgram, BringsTheLogUpWhereThereIsAnError) {
+  const Played played = play(
+      fmt::format("panel Bakes\nwait frames 3\ndrop {}\nwait frames 5\nwhere log.clear\n", path("lost.glb")));
+  EXPECT_GT(played.answer("where log.clear")["width"], 0.0);
 }
 
 // At twice the size in a small window, nothing that is clicked may be covered or out of reach.

@@ -1,10 +1,6 @@
-// Tests lights in the editor's window: new ones, suns on the sky, and key lights of environment maps.
+// Tests lights in the editor's window: new ones, and key lights of environment maps.
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
-#include "assets/glb.hpp"
-#include "assets/shapes.hpp"
 #include "tests/editor/program/editor_program.hpp"
 
 namespace lambent {
@@ -23,50 +19,6 @@ TEST_F(EditorProgram, ShowsANewLightOfEachKindAtOnce) {
     EXPECT_LT(states[i]["exposureEv"].get<double>(), before - 0.1) << states[i]["selected"].dump();
 }
 
-TEST_F(EditorProgram, TurnsSunsThatAreDraggedOverTheSky) {
-  // The camera looks towards azimuth 35, elevation 25; its back faces the light that is added by hand.
-  const Played played = play(fmt::format(R"(
-open {0}
-lights constant:0.3,0.3,0.3 sun:45,30,6,30,28,25
-wait loaded 60
-set environment:Environment.rotation 10
-camera orbit:215,-25,2.5,50
-wait seconds 1
-select type:environment
-wait frames 3
-state
-click sun.handle
-drag sun.handle to viewport@0.5,0.5
-state
-undo
-state
-create-directional
-wait frames 3
-drag sun.handle to viewport@0.5,0.5
-get Transform.rotation
-state
-)",
-                                         path("hello.glb")),
-                             {"--no-bake"});
-  const std::vector<json> states = played.all("state");
-  ASSERT_EQ(states.size(), 4u);
-  const json before = states[0]["lights"], dragged = states[1]["lights"];
-  EXPECT_EQ(dragged[0], before[0]);
-  float azimuth = 0.0f, elevation = 0.0f;
-  const std::string word = dragged[1];
-  ASSERT_EQ(std::sscanf(word.c_str(), "sun:%f,%f,6,30,28,25", &azimuth, &elevation), 2) << word;
-  EXPECT_NEAR(azimuth, 25.0f, 1.0f) << "35 in the world, which is turned by 10";
-  EXPECT_NEAR(elevation, 25.0f, 1.0f);
-  EXPECT_EQ(states[1]["undo"], "Undo turn of sun");
-  EXPECT_EQ(states[2]["lights"], before) << "one step for the whole drag";
-  // The lamp shines along its -Z, so its +Z points to where it is.
-  const json turn = played.answer("get Transform");
-  const double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
-  EXPECT_NEAR(2.0 * (x * z + w * y), std::cos(0.436) * std::sin(0.611), 0.03);
-  EXPECT_NEAR(2.0 * (y * z - w * x), std::sin(0.436), 0.03);
-  EXPECT_EQ(states[3]["undo"], "Undo turn of directional");
-}
-
 // The studio's soft boxes are found as key lights in its image, and each of their discs can be moved and
 // dimmed.
 TEST_F(EditorProgram, MovesDimsAndResetsAKeyLightOfAnEnvironmentMap) {
@@ -79,12 +31,7 @@ wait frames 5
 keys
 move-key 0 35 25
 keys
-camera orbit:215,-10,2.5,60
-wait seconds 1
-panel Environment
-select type:environment
-wait frames 5
-drag key.0.handle to viewport@0.5,0.5
+move-key 0 120 10
 keys
 state
 undo
@@ -131,11 +78,10 @@ expect /1/edited true
   EXPECT_NEAR(keys[1][0]["share"].get<double>(), keys[0][0]["share"].get<double>(), 1e-3)
       << "as strong as before";
   EXPECT_EQ(keys[1][1], keys[0][1]) << "the others stay";
-  // The handle was dragged to the middle: the camera looks towards azimuth 35, elevation 10.
-  EXPECT_NEAR(keys[2][0]["azimuth"].get<double>(), 35.0, 1.0);
-  EXPECT_NEAR(keys[2][0]["elevation"].get<double>(), 10.0, 1.0);
+  EXPECT_NEAR(keys[2][0]["azimuth"].get<double>(), 120.0, 0.01);
+  EXPECT_NEAR(keys[2][0]["elevation"].get<double>(), 10.0, 0.01);
   EXPECT_EQ(played.answer("state")["undo"], "Undo turn of key light");
-  EXPECT_EQ(keys[3], keys[1]) << "one step for the whole drag";
+  EXPECT_EQ(keys[3], keys[1]);
   // The factors of the channels are 1/2, 1/4 and 1.
   for (std::size_t channel = 0; const double factor : {0.5, 0.25, 1.0}) {
     const auto before = keys[0][0]["radiance"][channel].get<double>();

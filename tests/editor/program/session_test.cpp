@@ -7,7 +7,6 @@
 
 #include "editor/document/history.hpp"
 #include "editor/session/field_numbers.hpp"
-#include "editor/session/log.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/session/viewing.hpp"
 #include "tests/editor/document/small_world.hpp"
@@ -15,50 +14,6 @@
 
 namespace lambent::editor {
 namespace {
-
-// Tests how long notices stand over the view.
-
-using namespace std::chrono_literals;
-
-TEST(LogToasts, StandFromTheirFirstFrameOnForSeconds) {
-  Log log;
-  EXPECT_FALSE(log.hasToasts());
-  log.note("baked");
-  EXPECT_TRUE(log.hasToasts());
-  const std::chrono::steady_clock::time_point start;
-  for (int frame = 0; frame < 50; ++frame) {
-    const auto toasts = log.toasts(start + frame * 100ms);
-    ASSERT_EQ(toasts.size(), 1u) << "frame " << frame;
-    EXPECT_EQ(toasts.front().text, "baked");
-  }
-  EXPECT_TRUE(log.toasts(start + 7s).empty());
-  EXPECT_FALSE(log.hasToasts());
-  EXPECT_EQ(log.entries().size(), 1u) << "it stays in the log";
-}
-
-// Nobody would see a toast that stands for less time than a frame takes.
-TEST(LogToasts, StandForSomeFramesHoweverSlowTheseAre) {
-  Log log;
-  log.warn("truncated");
-  const std::chrono::steady_clock::time_point start;
-  for (int frame = 0; frame < 4; ++frame) EXPECT_EQ(log.toasts(start + frame * 10s).size(), 1u);
-  EXPECT_TRUE(log.toasts(start + 40s).empty());
-}
-
-TEST(LogToasts, StandAgainWhenTheyAreRepeatedAndGoWithTheLog) {
-  Log log;
-  log.note("saved");
-  const std::chrono::steady_clock::time_point start;
-  for (int frame = 0; frame < 4; ++frame) log.toasts(start + frame * 1s);
-  log.note("saved");
-  const auto toasts = log.toasts(start + 10s);
-  ASSERT_EQ(toasts.size(), 1u);
-  EXPECT_EQ(toasts.front().times, 2u);
-  for (int i = 0; i < 9; ++i) log.note("note " + std::to_string(i));
-  EXPECT_EQ(log.toasts(start + 11s).size(), 4u) << "the latest";
-  log.clear();
-  EXPECT_FALSE(log.hasToasts());
-}
 
 TEST(PictureScale, IsCoarseOnlyWhileSlowPicturesMove) {
   PictureScale scale;
@@ -124,32 +79,6 @@ TEST(LightUnits, OfASpotAreTheIntegralOfItsFalloff) {
   EXPECT_NEAR(unitOf(spot, "lm").factor, flux, 1e-6);
   spot.inner_cone_rad = spot.outer_cone_rad = std::numbers::pi_v<float> / 2.0f;
   EXPECT_NEAR(unitOf(spot, "lm").factor, 2.0 * kPi, 1e-6) << "half of all directions";
-}
-
-// Returns what the typed text makes of 10.
-double ofTen(std::string_view text) {
-  const auto edit = parseNumberEdit(text);
-  EXPECT_TRUE(edit) << text;
-  return edit ? edit->appliedTo(10.0) : -1.0;
-}
-
-TEST(NumberEdit, SetsWhatIsTyped) {
-  EXPECT_EQ(ofTen("2.5"), 2.5);
-  EXPECT_EQ(ofTen("-3"), -3.0) << "a number, not a difference";
-  EXPECT_EQ(ofTen(" +1e2 "), 100.0);
-}
-
-TEST(NumberEdit, ShiftsAndScalesTheNumberThatIsThere) {
-  EXPECT_EQ(ofTen("+=1"), 11.0);
-  EXPECT_EQ(ofTen("-= 4"), 6.0);
-  EXPECT_EQ(ofTen("*2"), 20.0);
-  EXPECT_EQ(ofTen("*=1.5"), 15.0);
-  EXPECT_EQ(ofTen("/4"), 2.5);
-}
-
-TEST(NumberEdit, RefusesWhatIsNoFiniteNumber) {
-  for (const char* text : {"", " ", "2*", "two", "/0", "nan", "inf", "1e999", "+=", "++1", "2 3"})
-    EXPECT_FALSE(parseNumberEdit(text)) << text;
 }
 
 class NewLights : public testing::Windowless {

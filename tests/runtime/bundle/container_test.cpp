@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/bundle/glb.hpp"
 #include "tests/runtime/bundle/sample_of_every_list.hpp"
 
 namespace lambent::bundle {

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/frame/frame_parts.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
@@ -27,41 +28,19 @@ std::vector<std::size_t> changes(const spec::RgbaImage& a, const spec::RgbaImage
 
 }  // namespace
 
-TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
-  const auto both = parseOverlays("neighborhoods:z,0.25,lights");
+TEST(OverlayWords, AListNamesThem) {
+  const auto both = parseOverlays("neighborhoods,lights");
   ASSERT_TRUE(both) << both.error().line();
   EXPECT_TRUE(both->neighborhoods && both->lights);
   EXPECT_FALSE(both->groups || both->volumes || both->light_probes);
-  EXPECT_EQ(both->slice.axis, 2);
-  EXPECT_EQ(both->slice.position, 0.25f);
   EXPECT_FALSE(parseOverlays("")->any());
   EXPECT_TRUE(parseOverlays("volumes")->volumes && parseOverlays("groups")->groups);
   EXPECT_TRUE(parseOverlays("light-probes")->light_probes && parseOverlays("keys")->keys);
-  for (const char* wrong :
-       {"light", "lights:x,0.5", "neighborhoods:", "neighborhoods:w,0.5", "neighborhoods:x",
-        "neighborhoods:x,2", "neighborhoods:x,0.5lights", "lights,,"}) {
+  for (const char* wrong : {"light", "lights:x", "lights,,"}) {
     const auto options = parseOverlays(wrong);
     ASSERT_FALSE(options) << wrong;
     EXPECT_NE(options.error().hint.find("light-probes"), std::string::npos);
   }
-}
-
-TEST(OverlayKeys, TheBoxOfAShadowMapHoldsAllThatIsSeenAndStandsOnItsLight) {
-  const std::vector<glm::dvec3> seen = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 2}, {-1, 0.5, 2}};
-  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
-  const auto region = regionOf(seen, towards, 0.0, scene::Box{glm::vec3(-2.0f), glm::vec3(2.0f)});
-  ASSERT_TRUE(region);
-  const auto corners = cornersOf(*region);
-  // In its own axes the box is [0, 1] in all three.
-  const glm::dvec3 origin(corners[0]);
-  for (const glm::dvec3& point : seen)
-    for (const std::size_t bit : {1u, 2u, 4u}) {
-      const glm::dvec3 edge = glm::dvec3(corners[bit]) - origin;
-      const double share = glm::dot(point - origin, edge) / glm::dot(edge, edge);
-      EXPECT_GE(share, -1e-5);
-      EXPECT_LE(share, 1.0 + 1e-5);
-    }
-  EXPECT_LT(glm::distance(glm::normalize(glm::dvec3(corners[4]) - origin), towards), 1e-6);
 }
 
 using OverlayTest = testing::GpuTest;
@@ -186,8 +165,8 @@ TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
   std::size_t beside = 0;
   for (const std::size_t i : changed) beside += glm::distance(glm::vec2(i % 64, i / 64), sun) < 6.0f;
   EXPECT_GE(beside, 6u) << "a ring about it";
-  ASSERT_EQ(stage.frame->kept<KeyShadows>().maps().size(), 1u);
-  EXPECT_LT(glm::distance(stage.frame->kept<KeyShadows>().maps()[0].light.direction,
+  ASSERT_EQ(stage.frame->parts().key_shadows.maps().size(), 1u);
+  EXPECT_LT(glm::distance(stage.frame->parts().key_shadows.maps()[0].light.direction,
                           stage.environment.keys()[0].direction),
             1e-6f);
   stage.frame->setOverlays({});

@@ -1,5 +1,5 @@
 // Tests that picking returns what the picture shows.
-#include "runtime/debug/picker.hpp"
+#include "runtime/debug/data_view.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>

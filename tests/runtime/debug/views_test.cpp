@@ -19,13 +19,6 @@ using testing::ViewStage;
 
 using testing::kWhite;
 
-// Returns the unoccluded input of a normal-mapped surface: the light itself.
-BundleBuilder& openMapped(BundleBuilder& builder) {
-  std::vector<float> same(81, 0.0f);
-  for (std::size_t j = 0; j < 9; ++j) same[9 * j + j] = 1.0f;
-  return builder.normalMapped().transfer([same](const glm::vec3&) { return same; });
-}
-
 BundleBuilder openSphere() {
   gltf::Material material;
   material.base_color = {0.8f, 0.5f, 0.2f, 1.0f};
@@ -41,12 +34,10 @@ TEST(ViewWords, EveryViewIsFoundByItsNameAndByNoOther) {
     EXPECT_EQ(choice->view, row.view);
     EXPECT_EQ(*parseView(wordOf(*choice)), *choice);
   }
-  EXPECT_EQ(parseView("transfer-band:4")->band, 4u);
-  for (const char* wrong : {"", "transfer", "transfer-band:8", "transfer-band:-1", "transfer-band:1x",
-                            "transfer-band:", "final:1", "Normals"}) {
+  for (const char* wrong : {"", "transfer", "final:1", "Normals"}) {
     const auto choice = parseView(wrong);
     ASSERT_FALSE(choice) << wrong;
-    EXPECT_NE(choice.error().hint.find("transfer-band[:0..7]"), std::string::npos);
+    EXPECT_NE(choice.error().hint.find("transfer-dc, error"), std::string::npos);
   }
 }
 
@@ -67,20 +58,6 @@ TEST_F(ViewTest, TransferDcOfAnOpenSphereIsTheClosedFormAllOver) {
   }
   EXPECT_GT(count, 300u);
   EXPECT_EQ(stage.frame->legend().max, kOpenDc);
-}
-
-TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurfacesAlike) {
-  for (const bool mapped : {false, true})
-    for (const std::uint32_t band : {0u, 1u, 2u}) {
-      BundleBuilder builder = openSphere();
-      if (mapped) openMapped(builder);
-      ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::TransferBand, band}));
-      const float expected = openBandEnergy(band);
-      for (const glm::vec4& texel : stage.picture().texels) {
-        if (texel.a == 0.0f) continue;
-        ASSERT_NEAR(texel.r, expected, 0.005f * expected) << band << mapped;
-      }
-    }
 }
 
 TEST_F(ViewTest, ImportanceIsWhatTheBundleRecordsAndNothingWhereNobodySees) {

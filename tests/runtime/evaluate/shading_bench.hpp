@@ -28,7 +28,7 @@ struct ShadingBench {
   ShadingBench(BundleMaker& maker, const RandomBundleOptions& options,
                std::uint64_t page_bytes = gpu::Arena::kMaxPageBytes)
       : residency(page_bytes), made(maker.make(options)) {
-    EXPECT_TRUE(residency.add(made.description));
+    EXPECT_TRUE(residency.add(made.description, 0));
     for (std::uint32_t k = 0; k < options.light_probes; ++k)
       incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,
                                        glm::vec3(1.0f, 2.0f, 0.5f)));

@@ -21,17 +21,6 @@ struct DcKernel : Invocation {
 #include "as_cpp/transfer_values.comp"
 };
 #undef LAMBENT_VALUE
-#define LAMBENT_VALUE 2
-struct BandKernel : Invocation {
-#include "as_cpp/transfer_values.comp"
-};
-#define LAMBENT_VISIBILITY 4
-struct VisibilityBandKernel : Invocation {
-#include "as_cpp/transfer_values.comp"
-};
-static_assert(LAMBENT_VISIBILITY == kOrder);
-#undef LAMBENT_VISIBILITY
-#undef LAMBENT_VALUE
 
 struct ValuesBench : lambent::testing::ShadingBench {
   using ShadingBench::ShadingBench;
@@ -61,7 +50,6 @@ struct ValuesBench : lambent::testing::ShadingBench {
   // Computes what ask() returned, by the kernels as C++ from the same memory.
   std::vector<SampleValue> twin(const TransferQuestion& question) {
     std::vector<SampleValue> wanted(values.bytes() / sizeof(SampleValue), {0, kNoCluster});
-    const std::vector<std::uint32_t> gaunt = gauntWords(kOrder, 3);
     TransferTable table;
     for (std::uint32_t i = 0; i < residency.cells().size(); ++i) {
       const streaming::ResidentCell& cell = residency.cells()[i];
@@ -71,26 +59,15 @@ struct ValuesBench : lambent::testing::ShadingBench {
       residency.transfer().page(cell.block.page).read(0, std::span(page));
       for (std::uint32_t t = table.cells[i].first; t < table.transfers.size(); ++t) {
         const TransferRecord& record = table.transfers[t];
-        const bool dc = question.value == TransferValue::Dc;
-        // Bounced light of glossy surfaces has a transfer of its own, of which only DC adds up.
-        if (record.order == 0 || (record.accumulate != 0 && !dc)) continue;
+        if (record.order == 0) continue;
         const ValueCell described{.transfer = t, .first_value = firstValue(i), .cell = i, .constant = 0.0f};
-        const auto compute = [&](auto kernel) {
-          kernel.cells = std::span(&described, 1);
-          kernel.transfers = table.transfers;
-          kernel.page = page;
-          kernel.places = table.places;
-          kernel.values = wanted;
-          kernel.band = question.band;
-          if constexpr (requires { kernel.gaunt; }) kernel.gaunt = gaunt;
-          lambent::glsl::run(kernel, record.sample_count);
-        };
-        if (dc)
-          compute(DcKernel{});
-        else if (record.visibility != 0)
-          compute(VisibilityBandKernel{});
-        else
-          compute(BandKernel{});
+        DcKernel kernel;
+        kernel.cells = std::span(&described, 1);
+        kernel.transfers = table.transfers;
+        kernel.page = page;
+        kernel.places = table.places;
+        kernel.values = wanted;
+        lambent::glsl::run(kernel, record.sample_count);
       }
     }
     return wanted;
@@ -123,22 +100,18 @@ TEST_F(TransferValuesTest, AreThoseOfTheKernelAsCppForEveryKindOfSample) {
   lambent::testing::BundleMaker maker(11);
   ValuesBench bench(maker, everyKind());
   bench.uploadTransfer();
-  for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed})
-    for (const int band : {-1, 0, 1, 2, 3}) {
-      const TransferQuestion question{.value = band < 0 ? TransferValue::Dc : TransferValue::BandEnergy,
-                                      .band = static_cast<std::uint32_t>(std::max(band, 0)),
-                                      .mode = mode};
-      const auto got = bench.ask(question), wanted = bench.twin(question);
-      double worst = 0.0, largest = 0.0;
-      for (std::size_t i = 0; i < wanted.size(); ++i) {
-        ASSERT_EQ(got[i].cluster, wanted[i].cluster);
-        worst = lambent::testing::larger(worst, double{std::abs(valueOf(got[i]) - valueOf(wanted[i]))});
-        largest = lambent::testing::larger(largest, double{std::abs(valueOf(wanted[i]))});
-      }
-      EXPECT_GT(largest, 0.01) << band;
-      EXPECT_LT(worst, 1e-5 * largest)
-          << "band " << band << (mode == TransferMode::Full ? " full" : " shadowed");
+  for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed}) {
+    const TransferQuestion question{.value = TransferValue::Dc, .mode = mode};
+    const auto got = bench.ask(question), wanted = bench.twin(question);
+    double worst = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      ASSERT_EQ(got[i].cluster, wanted[i].cluster);
+      worst = lambent::testing::larger(worst, double{std::abs(valueOf(got[i]) - valueOf(wanted[i]))});
+      largest = lambent::testing::larger(largest, double{std::abs(valueOf(wanted[i]))});
     }
+    EXPECT_GT(largest, 0.01);
+    EXPECT_LT(worst, 1e-5 * largest) << (mode == TransferMode::Full ? "full" : "shadowed");
+  }
 }
 
 TEST_F(TransferValuesTest, ClustersAndWhatCellsSayAreExact) {
@@ -177,20 +150,10 @@ TEST_F(TransferValuesTest, TheSameQuestionTwiceDispatchesNothing) {
   lambent::testing::BundleMaker maker(14);
   ValuesBench bench(maker, {.clusters = 2});
   bench.uploadTransfer();
-  const TransferQuestion question{.value = TransferValue::BandEnergy, .band = 1};
+  const TransferQuestion question{.value = TransferValue::Dc};
   EXPECT_GT(bench.update(question), 0u);
   EXPECT_EQ(bench.update(question), 0u);
-  EXPECT_GT(bench.update({.value = TransferValue::BandEnergy, .band = 2}), 0u);
-}
-
-// One vector in the layout of the kernels, without axes.
-template <typename Kernel>
-Kernel kernelOf(std::span<const float> vector, std::vector<std::uint32_t>& words) {
-  words.clear();
-  for (const float value : vector) words.push_back(std::bit_cast<std::uint32_t>(value));
-  Kernel kernel;
-  kernel.page = words;
-  return kernel;
+  EXPECT_GT(bench.update({.value = TransferValue::Dc, .mode = TransferMode::Shadowed}), 0u);
 }
 
 TEST(TransferValueKernels, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
@@ -210,29 +173,17 @@ TEST(TransferValueKernels, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
     row[l * l + l] = kCosineOverPi[l] * std::sqrt(static_cast<float>(2 * l + 1) / kFourPi);
   for (std::uint32_t j = 0; j < 9; ++j) matrix[j * 16 + j] = 1.0f;
   open[0] = std::sqrt(kFourPi);
-  std::vector<std::uint32_t> words;
   const auto dcOf = [&](const TransferRecord& record, std::span<const float> vector) {
-    return kernelOf<DcKernel>(vector, words).dcOf(record, {}, 0);
+    std::vector<std::uint32_t> words;
+    for (const float value : vector) words.push_back(std::bit_cast<std::uint32_t>(value));
+    DcKernel kernel;
+    kernel.page = words;
+    return kernel.dcOf(record, {}, 0);
   };
   const float dc = std::sqrt(1.0f / kFourPi);
   EXPECT_NEAR(dcOf(plain, row), dc, 1e-6f);
   EXPECT_NEAR(dcOf(mapped, matrix), dc, 1e-6f);
   EXPECT_NEAR(dcOf(visibility, open), dc, 1e-6f);
-  const std::vector<std::uint32_t> gaunt = gauntWords(kOrder, 3);
-  const auto energyOf = [&]<typename Kernel>(Kernel kernel, const TransferRecord& record,
-                                             std::uint32_t band) {
-    kernel.band = band;
-    if constexpr (requires { kernel.gaunt; }) kernel.gaunt = gaunt;
-    return kernel.energyOf(record, {}, 0);
-  };
-  for (std::uint32_t band = 0; band < 3; ++band) {
-    // The sum over m of ((A_l/pi) y_lm(n))² does not depend on n.
-    const float energy =
-        kCosineOverPi[band] * kCosineOverPi[band] * static_cast<float>(2 * band + 1) / kFourPi;
-    EXPECT_NEAR(energyOf(kernelOf<BandKernel>(row, words), plain, band), energy, 1e-6f);
-    EXPECT_NEAR(energyOf(kernelOf<BandKernel>(matrix, words), mapped, band), energy, 1e-6f);
-    EXPECT_NEAR(energyOf(kernelOf<VisibilityBandKernel>(open, words), visibility, band), energy, 1e-6f);
-  }
 }
 
 }  // namespace lambent::evaluate

@@ -112,7 +112,7 @@ TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
   stage.render();
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, sizeof(SurfaceDraw));
   EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
-  EXPECT_EQ(stage.reason("raster"), "a material changed");
+  EXPECT_EQ(stage.reason("raster"), "materials changed");
   stage.editMaterial(3).roughness = std::numeric_limits<float>::quiet_NaN();
   stage.render();
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u) << "no number, no change";
@@ -122,7 +122,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   FrameSettings plain;
   plain.exposure_ev = 0.0f;
   const std::pair<const char*, const char*> changes[] = {
-      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "hann"},   {"order", "2"},
+      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "auto"},   {"order", "2"},
       {"diffuse", "off"},         {"volumes", "off"},       {"march-step", "4"},  {"captures", "off"},
       {"local-shadows", "off"},   {"neighborhoods", "off"}, {"capture-size", "8"}};
   LiveStage stage(ballAndCloud(), {kSun}, plain);
@@ -196,10 +196,10 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   registry.edit<scene::Transform>(stage.world.instance(0).root).translation.x += 1.0f;
   stage.world.updateTransforms();
   stage.render();
-  EXPECT_EQ(stage.reason("transforms"), "a group moved");
-  stage.set("window", "hann");
+  EXPECT_EQ(stage.reason("transforms"), "groups moved");
+  stage.set("window", "auto");
   stage.render();
-  EXPECT_EQ(stage.reason("shade"), "ringing suppression: hann");
+  EXPECT_EQ(stage.reason("shade"), "ringing suppression: auto");
   stage.set("exposure", "1");
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "");

@@ -4,7 +4,6 @@
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/window.hpp"
 #include "tests/support/gl_seam.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -92,29 +91,6 @@ TEST_F(Device, SaysThatItsContextIsLost) {
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().problem,
             "has lost all that was drawn: its driver reset it because of another program");
-}
-
-TEST_F(Device, DrawsPlainTextOnADarkGroundInTheTopLeftCorner) {
-  constexpr std::uint32_t kWidth = 160, kHeight = 80;
-  const Texture picture("picture", {.format = GL_RGBA8, .width = kWidth, .height = kHeight});
-  const Framebuffer target("picture", picture, nullptr);
-  glBindFramebuffer(GL_FRAMEBUFFER, target.id());
-  constexpr float kMiddle[] = {0.5f, 0.5f, 0.5f, 1.0f};
-  glClearBufferfv(GL_COLOR, 0, kMiddle);
-  drawPlainText("H  I", kHeight, {.scale = 2.0f, .margin_px = 5.0f});
-  std::vector<std::uint8_t> texels(std::size_t{kWidth} * kHeight * 4);
-  glReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  std::size_t bright = 0, dark = 0;
-  for (std::uint32_t y = 0; y < kHeight; ++y)
-    for (std::uint32_t x = 0; x < kWidth; ++x) {
-      const std::uint8_t value = texels[(std::size_t{kHeight - 1 - y} * kWidth + x) * 4];
-      bright += value > 200, dark += value < 50;
-      if (x < 5 || y < 5 || x > 70 || y > 45) {
-        EXPECT_NEAR(value, 128, 1) << x << ", " << y;
-      }
-    }
-  EXPECT_GT(bright, 60u) << "the strokes of two letters";
-  EXPECT_GT(dark, 4 * bright) << "the ground";
 }
 
 TEST_F(Device, NamesFileAndLineOfAShaderThatDoesNotCompile) {

@@ -104,7 +104,7 @@ TEST(Instantiate, EntitiesSayWhatTheDescriptionSays) {
   const Hall hall;
   ecs::Registry registry;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2u);
+  EXPECT_EQ(registry.entities().size(), 1 + 5 + 2 + 6 + 2u);
   const auto world = gltf::worldTransforms(hall.d.nodes);
   for (std::size_t i = 0; i < world.size(); ++i) {
     const glm::mat4& found = registry.get<WorldTransform>(scene.nodes[i]).world_from_node;
@@ -249,7 +249,7 @@ TEST(Instantiate, GivesEachLightOfAGroupAnEntityThatKeepsItsId) {
   hall.d.groups[1].lights = {{Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
   ecs::Registry registry, again;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2 + 2u) << "a lamp is its node";
+  EXPECT_EQ(registry.entities().size(), 1 + 5 + 2 + 6 + 2 + 2u) << "a lamp is its node";
   ASSERT_EQ(scene.lamps.size(), 2u);
   ASSERT_EQ(scene.lamps[0].size(), 2u);
   EXPECT_EQ(scene.lamps[0][0], nodeOf(scene, hall.eye));
@@ -273,7 +273,7 @@ TEST(Instantiate, GivesEachLightOfAGroupAnEntityThatKeepsItsId) {
   EXPECT_EQ(registry.get<StableId>(scene.lamps[0][0]), again.get<StableId>(other.lamps[0][1]));
   EXPECT_NE(registry.get<StableId>(scene.lamps[0][1]), registry.get<StableId>(scene.lamps[1][0]));
   destroyInstance(registry, scene);
-  EXPECT_EQ(registry.entityCount(), 0u);
+  EXPECT_EQ(registry.entities().size(), 0u);
 }
 
 TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) {
@@ -283,15 +283,15 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
   const auto again = instantiate(registry, hall.d, {.bundle_index = 3, .bundle_id = "hall.lmb.glb"});
   ASSERT_FALSE(again);
   EXPECT_NE(again.error().line().find("hall.lmb.glb"), std::string::npos);
-  const std::size_t count = registry.entityCount();
+  const std::size_t count = registry.entities().size();
   const SceneInstance second = instance(registry, hall.d, 1);
   EXPECT_NE(registry.get<StableId>(first.draws[0]), registry.get<StableId>(second.draws[0]));
   destroyInstance(registry, first);
-  EXPECT_EQ(registry.entityCount(), count);
+  EXPECT_EQ(registry.entities().size(), count);
   updateTransforms(registry);
   EXPECT_FALSE(worldBounds(registry).empty());
   destroyInstance(registry, second);
-  EXPECT_EQ(registry.entityCount(), 0u);
+  EXPECT_EQ(registry.entities().size(), 0u);
   EXPECT_TRUE(worldBounds(registry).empty());
 }
 

@@ -252,19 +252,6 @@ std::vector<glm::vec3> picture(const PictureShape& shape, const LightVector& lig
   return texels;
 }
 
-TEST(ShProjection, MakesAConstantPictureConstantLight) {
-  for (const PictureShape& shape : kPictureShapes) {
-    const std::vector<glm::vec3> texels(static_cast<std::size_t>(shape.width * shape.height),
-                                        glm::vec3(1, 2, 0.5f));
-    const LightVector light = projectImage(6, shape.layout, shape.width, shape.height, texels);
-    const LightVector expected = constantLight(6, {1, 2, 0.5f});
-    for (std::size_t i = 0; i < 36; ++i)
-      for (int channel = 0; channel < 3; ++channel)
-        EXPECT_NEAR(light.c[i][channel], expected.c[i][channel], 2 * shape.tolerance)
-            << name(shape.layout) << ", coefficient " << i;
-  }
-}
-
 TEST(ShProjection, GivesBackABandLimitedLight) {
   const LightVector light = discLight(6, {0.6f, 0.48f, 0.64f}, 0.5, {3, 1, 2}) + constantLight(6, {1, 1, 1});
   for (const PictureShape& shape : kPictureShapes) {

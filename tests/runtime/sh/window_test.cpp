@@ -147,7 +147,7 @@ TEST(CachedWindow, WindowsThatDoNotLookAtTheLightFollowItsOrderAndTheirKind) {
   Random random(10);
   const LightVector light = someLights(5, random), other = someLights(5, random);
   CachedWindow kept;
-  for (const Window window : {Window::Hann, Window::Off, Window::Auto}) {
+  for (const Window window : {Window::Auto, Window::Off}) {
     EXPECT_FALSE(kept.fits(light, window));
     kept.follow(light, window);
     EXPECT_EQ(kept.weights(), windowWeights(light, window));

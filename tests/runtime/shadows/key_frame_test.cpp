@@ -9,12 +9,11 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/frame.hpp"
+#include "runtime/frame/frame_parts.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/shadowed_light.hpp"
 #include "tests/runtime/shadows/key_stage.hpp"
 #include "tests/runtime/shadows/shadow_shaders.hpp"
@@ -198,8 +197,8 @@ TEST_F(KeyFrame, WhereThereAreNoKeyLightsNothingIsDrawnAndNothingChanges) {
     EXPECT_GT(brightest(a), 0.5);
     EXPECT_EQ(with.frame->counts()["key_lights"], 0u);
     EXPECT_EQ(with.mapsDrawn(), 0u);
-    EXPECT_FALSE(with.frame->kept<frame::KeyShadows>().any());
-    EXPECT_EQ(with.frame->kept<frame::KeyShadows>().bytesResident(), 0u);
+    EXPECT_FALSE(with.frame->parts().key_shadows.any());
+    EXPECT_EQ(with.frame->parts().key_shadows.bytesResident(), 0u);
     with.frame->timers().finish();
     for (const gpu::PassTime& time : with.frame->timers().latest()) EXPECT_NE(time.name, "key shadows");
   }
@@ -302,7 +301,7 @@ TEST_F(KeyFrame, LightsThatComeLaterShineAsThoseThatWereThereFromTheStart) {
   EXPECT_EQ(largestApart(changed.picture(view), expected), 0.0) << "also what of them bounces";
   ASSERT_TRUE(changed.environment.setLights(smooth));
   EXPECT_EQ(largestApart(changed.picture(view), dull), 0.0);
-  EXPECT_FALSE(changed.frame->kept<frame::KeyShadows>().any());
+  EXPECT_FALSE(changed.frame->parts().key_shadows.any());
   switched.environment.setMostKeys(kMost);
   EXPECT_EQ(largestApart(switched.picture(view), expected), 0.0);
   switched.environment.setMostKeys(0);
@@ -318,7 +317,7 @@ TEST_F(KeyFrame, LightWithoutShadowsGoesByBandsAltogether) {
   const spec::View view = from({2, 2, 3}, {0, 0.4f, 0});
   const spec::RgbaImage a = with.picture(view), b = without.picture(view);
   EXPECT_EQ(with.frame->counts()["key_lights"], 1u);
-  EXPECT_FALSE(with.frame->kept<frame::KeyShadows>().any());
+  EXPECT_FALSE(with.frame->parts().key_shadows.any());
   EXPECT_GT(brightest(b), 1.0);
   EXPECT_LT(largestApart(a, b), 1e-5 * brightest(b));
 }

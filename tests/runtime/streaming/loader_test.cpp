@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/container.hpp"
@@ -29,29 +30,24 @@ using testing::Sample;
 using lambent::testing::BuiltVolume;
 
 struct Name {
-  std::string operator()(const MeshChunk& r) const { return "mesh " + join({r.mesh, r.primitive}); }
-  std::string operator()(const ImageChunk& r) const { return "image " + join({r.image}); }
-  std::string operator()(const WeightsChunk& r) const { return "rows " + join({r.draw}); }
-  std::string operator()(const CodebookChunk& r) const {
-    return "codebook " + join({r.group.value, r.cell.value, r.transfer.value});
+  std::string operator()(const MeshRequest& r) const {
+    return fmt::format("mesh {}.{}", r.mesh, r.primitive);
   }
-  std::string operator()(const PlaneChunk& r) const {
-    return "plane " + join({r.group.value, r.cell.value, r.transfer.value, r.plane.value});
+  std::string operator()(const ImageRequest& r) const { return fmt::format("image {}", r.image); }
+  std::string operator()(const WeightsRequest& r) const { return fmt::format("rows {}", r.draw); }
+  std::string operator()(const CodebookRequest& r) const { return "codebook" + placeOf(r); }
+  std::string operator()(const PlaneRequest& r) const {
+    return fmt::format("plane{}.{}", placeOf(r), r.plane.value);
   }
-  std::string operator()(const LightWeightsChunk& r) const {
-    return "light weights " + join({r.group.value, r.cell.value});
+  std::string operator()(const LightWeightsRequest& r) const {
+    return fmt::format("light weights {}.{}", r.group.value, r.cell.value);
   }
-  std::string operator()(const ProxyChunk& r) const { return "proxy " + join({r.group.value}); }
-  std::string operator()(const BrdfChunk& r) const { return "brdf " + join({r.table}); }
-  std::string operator()(const DensityChunk& r) const { return "density " + join({r.group.value}); }
-  std::string operator()(const VoxelsChunk& r) const { return "voxels " + join({r.group.value}); }
-  static std::string join(std::initializer_list<std::uint32_t> numbers) {
-    std::string text;
-    for (const std::uint32_t n : numbers) {
-      if (!text.empty()) text += '.';
-      text += std::to_string(n);
-    }
-    return text;
+  std::string operator()(const ProxyRequest& r) const { return fmt::format("proxy {}", r.group.value); }
+  std::string operator()(const BrdfRequest& r) const { return fmt::format("brdf {}", r.table); }
+  std::string operator()(const DensityRequest& r) const { return fmt::format("density {}", r.group.value); }
+  std::string operator()(const VoxelsRequest& r) const { return fmt::format("voxels {}", r.group.value); }
+  static std::string placeOf(const CodebookRequest& r) {
+    return fmt::format(" {}.{}.{}", r.group.value, r.cell.value, r.transfer.value);
   }
 };
 
@@ -226,7 +222,7 @@ TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
   Loader loader(open(),
                 {ImageRequest{1}, MeshRequest{1, 1}, CodebookRequest{bundle::GroupIndex{1}, {}, {}},
-                 PlaneRequest{bundle::GroupIndex{1}, {}, {}, {}}},
+                 PlaneRequest{{bundle::GroupIndex{1}, {}, {}}, {}}},
                 threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));

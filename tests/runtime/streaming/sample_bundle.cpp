@@ -14,7 +14,7 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::streaming::testing {
 namespace {

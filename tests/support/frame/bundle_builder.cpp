@@ -12,7 +12,7 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 
 namespace lambent::testing {

@@ -73,7 +73,9 @@ struct Stage {
   effects::diffuse::Diffuse diffuse;
   lighting::GroupLights group_lights;
   LocalShadows shadowed_lights;
-  Surfaces surfaces{/*finest_texels=*/true};
+  evaluate::SeenSky seen_sky;
+  SurfaceModules modules;
+  Surfaces surfaces{/*finest_texels=*/true, modules};
   gpu::Counters raster, shadows;
   std::vector<std::uint32_t> masks = {0xfu};
 
@@ -114,22 +116,17 @@ struct Stage {
     constexpr auto kFull = evaluate::TransferMode::Full;
     EXPECT_TRUE(samples.shade(world.residency(), group_lights, kFull, counters));
     EXPECT_TRUE(diffuse.shade(world.residency(), group_lights, kFull, samples, counters));
-    const SurfaceModule* const modules[] = {&shadowed_lights};
-    const Result<void> done = surfaces.prepare(
-        world, diffuse, view,
-        {.options = {}, .modules = plain ? std::span<const SurfaceModule* const>() : modules}, raster);
+    modules.clear();
+    if (!plain) modules.push_back(&shadowed_lights);
+    const Result<void> done = surfaces.prepare(world, diffuse, seen_sky, view, {}, raster);
     EXPECT_TRUE(done) << done.error().line();
     const gpu::Texture color("picture", {.format = GL_RGBA32F, .width = kSize, .height = kSize});
     const gpu::Texture depth("depth", {.format = GL_DEPTH_COMPONENT32F, .width = kSize, .height = kSize});
     const gpu::Framebuffer target("picture", color, &depth);
-    glBindFramebuffer(GL_FRAMEBUFFER, target.id());
-    glViewport(0, 0, kSize, kSize);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDepthMask(GL_TRUE);
-    constexpr float kNone[] = {0, 0, 0, 0}, kFar = 1.0f;
-    glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kNone);
-    glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &kFar);
+    target.bind();
+    gpu::testDepth();
+    target.clearColor({});
+    target.clearDepth();
     if (!plain) shadowed_lights.bind(view, {kSize, kSize});
     surfaces.drawOpaque(world, raster);
     surfaces.drawBlended(world, raster);

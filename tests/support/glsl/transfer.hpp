@@ -1,7 +1,7 @@
 // The kernels that evaluate coded transfer, as C++, on memory that is laid out as on the GPU.
 #pragma once
 
-#include "runtime/transfer/layout.hpp"
+#include "runtime/transfer/codebook.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 #include "runtime/transfer/transfer_shared.h"
 #include "tests/support/glsl/glsl.hpp"

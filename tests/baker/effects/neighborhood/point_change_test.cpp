@@ -39,19 +39,6 @@ std::vector<glm::vec3> points() {
   return out;
 }
 
-// Returns E/pi at a receiver under light l, relative to that under uniform light of radiance 1.
-double irradiance(const ChangeMatrix& matrix, int order, int order_out, const glm::vec3& normal,
-                  std::span<const float> light) {
-  std::vector<float> cosine(static_cast<std::size_t>(order_out * order_out));
-  sh::unoccludedTransfer(order_out, normal, std::span<float>(cosine));
-  double sum = 0.0;
-  const auto columns = static_cast<std::size_t>(order * order);
-  for (std::size_t i = 0; i < cosine.size(); ++i)
-    for (std::size_t j = 0; j < columns; ++j)
-      sum += double{cosine[i]} * double{matrix[i * columns + j]} * double{light[j]};
-  return sum;
-}
-
 TEST(PointChange, OfABlackSphereIsMinusTheCapThatItFills) {
   const Ball ball(glm::vec3(0.0f));
   const CapDirections directions(2048);
@@ -70,45 +57,6 @@ TEST(PointChange, OfABlackSphereIsMinusTheCapThatItFills) {
       // Rays are aimed at the body, so distance does not matter.
       EXPECT_LT(error, 0.01 * change) << glm::length(p);
     }
-  }
-}
-
-TEST(PointChange, DimsUniformLightAtAFacingReceiverByTheSquareOfRadiusOverDistance) {
-  const Ball ball(glm::vec3(0.0f));
-  const CapDirections directions(2048);
-  const ChangeShape shape{.order = 5, .order_out = 5, .channels = 0};
-  PointChange point(ball.body, directions, shape);
-  std::vector<float> uniform(25, 0.0f);
-  uniform[0] = static_cast<float>(std::sqrt(4.0 * kPi));
-  for (const float distance : {1.5f, 2.0f, 4.0f, 8.0f}) {
-    point.look({0, distance, 0});
-    const ChangeMatrix matrix = matrixOf(shape, point.visibility(), {});
-    // Bands 5 and on of the cosine are left out: at most a few percent of what is blocked.
-    const double blocked = 1.0 / (double{distance} * double{distance});
-    EXPECT_NEAR(irradiance(matrix, 5, 5, {0, -1, 0}, uniform), -blocked, 0.04 * blocked) << distance;
-    // trace(M) = n² (1 + cos a)/2
-    double trace = 0.0;
-    for (std::size_t i = 0; i < 25; ++i) trace += double{matrix[i * 25 + i]};
-    const double cosine = std::sqrt(1.0 - blocked);
-    EXPECT_NEAR(trace, 25.0 * (0.5 * (1.0 + cosine) - 1.0), 25.0 * 0.005 * (1.0 - cosine)) << distance;
-  }
-}
-
-TEST(PointChange, GoesToNothingFarAwayAsTheSolidAngleDoes) {
-  const Ball ball(glm::vec3(0.0f));
-  const CapDirections directions(512);
-  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 0};
-  PointChange point(ball.body, directions, shape);
-  const ChangeMeter meter(shape);
-  double before = 0.0;
-  for (const float distance : {10.0f, 20.0f, 40.0f, 1e4f}) {
-    point.look({0, 0, distance});
-    const double change = meter.measure(point.visibility(), {});
-    if (before > 0.0 && distance < 1e3f) {
-      EXPECT_NEAR(change / before, 0.25, 0.03);
-    }
-    EXPECT_LT(change, 1.2 / (double{distance} * double{distance}));
-    before = change;
   }
 }
 

@@ -11,7 +11,7 @@ using testing::matrixOf;
 
 // Makes a homogeneous ball of radius 1 about the origin. It stops light, and sends `glow` times the stopped
 // fraction, in band 0 alone.
-VolumeBody fogBody(double extinction, float glow, bool scatters) {
+VolumeBody fogBody(double extinction, float glow) {
   const auto march = [=](const glm::vec3& origin, const glm::vec3& direction, float t_max,
                          std::span<float> scattered) {
     const double along = -glm::dot(glm::dvec3(origin), glm::dvec3(direction));
@@ -25,11 +25,11 @@ VolumeBody fogBody(double extinction, float glow, bool scatters) {
       scattered[c * 25] = glow * static_cast<float>((1.0 - through) * 0.5 / std::sqrt(std::numbers::pi));
     return static_cast<float>(through);
   };
-  return VolumeBody(march, /*order=*/5, glm::vec3(-1.0f), glm::vec3(1.0f), scatters);
+  return VolumeBody(march, /*order=*/5, glm::vec3(-1.0f), glm::vec3(1.0f));
 }
 
 TEST(VolumeBody, OfGreatDensityIsTheBlackSphere) {
-  const VolumeBody body = fogBody(1e6, 0.0f, /*scatters=*/false);
+  const VolumeBody body = fogBody(1e6, 0.0f);
   const CapDirections directions(4096);
   const ChangeShape shape{.order = 5, .order_out = 3, .channels = 0};
   PointChange point(body, directions, shape);
@@ -44,7 +44,7 @@ TEST(VolumeBody, OfGreatDensityIsTheBlackSphere) {
 
 TEST(VolumeBody, LetsThroughAtItsMiddleWhatBeerAndLambertSay) {
   for (const double extinction : {0.0, 1e-6, 1.0, 4.0}) {
-    const VolumeBody body = fogBody(extinction, 0.0f, /*scatters=*/false);
+    const VolumeBody body = fogBody(extinction, 0.0f);
     const CapDirections directions(8192);
     PointChange point(body, directions, {.order = 5, .order_out = 3, .channels = 0});
     point.look(glm::vec3(0.0f));
@@ -58,7 +58,7 @@ TEST(VolumeBody, LetsThroughAtItsMiddleWhatBeerAndLambertSay) {
 }
 
 TEST(VolumeBody, ThatSendsAllThatItStopsLeavesUniformLightAsItIs) {
-  const VolumeBody body = fogBody(2.0, 1.0f, /*scatters=*/true);
+  const VolumeBody body = fogBody(2.0, 1.0f);
   const CapDirections directions(1024);
   const ChangeShape shape{.order = 5, .order_out = 3, .channels = 3};
   PointChange point(body, directions, shape);

@@ -1,5 +1,5 @@
 // Compares interreflection over glossy surfaces, and between glossy and diffuse ones, with closed forms.
-#include "baker/effects/surface/gather.hpp"
+#include "baker/effects/surface/bounces.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 
@@ -191,62 +191,9 @@ ExitKernels everywhere(std::span<const float> kernel) {
           }};
 }
 
-// A point's exit radiance is its kernel times what it sees, in as many bands as the kernel has.
-TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
-  constexpr int kExit = 7;
-  const Transport t(corner(true, true), true);
-  // Makes light from one direction, cut to this many bands.
-  const glm::vec3 from = glm::normalize(glm::vec3(-0.3f, 1.0f, 0.0f));
-  std::array<float, kExit * kExit> lobe{};
-  sh::evaluate(kExit, from, lobe);
-  const ExitKernels kernels = everywhere(lobe);
-  const TracedScene view = t.diffuse();
-  const DirectPass pass(view, {.rays = 4096, .order_out = kExit});
-  Progress progress;
-  auto direct = bakeDirect(pass, {progress});
-  const LightToBounce light{.pass = pass, .direct = *direct, .kernels = &kernels};
-  const GlossyPasses passes(light, 5);
-
-  const std::size_t sample = t.sampleAt({-1.0f / 3.0f, 0.0f, 0.0f});
-  ASSERT_LT(sample, t.samples.size());
-  std::array<float, 25> left{};
-  const auto corner_sample = static_cast<std::uint32_t>(sample);
-  passes.exit().add({}, {corner_sample, corner_sample, corner_sample}, {0, 1, 0}, -1.0f, 1.0f, left);
-
-  // Samples the upper half uniformly; directions below have the visibility of their mirror images.
-  constexpr std::size_t kDirections = 1u << 16;
-  std::vector<RaySegment> ways;
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    const double height = (static_cast<double>(k) + 0.5) / kDirections, r = std::sqrt(1.0 - height * height),
-                 turn = 2.39996322972865332 * static_cast<double>(k);
-    ways.push_back({t.samples.positions[sample] + glm::vec3(0, 1e-4f, 0),
-                    glm::vec3(r * std::cos(turn), height, r * std::sin(turn)),
-                    std::numeric_limits<float>::infinity()});
-  }
-  std::vector<std::uint8_t> blocked(ways.size());
-  view.rays.occluded(ways, blocked);
-  std::array<double, 25> expected{};
-  std::array<float, kExit * kExit> y{};
-  double lost = 0.0;  // what five bands of the kernel would leave out, at most
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    if (blocked[k]) continue;
-    for (const float side : {1.0f, -1.0f}) {
-      sh::evaluate(kExit, ways[k].direction * glm::vec3(1, side, 1), y);
-      double value = 0.0, beyond = 0.0;
-      for (std::size_t i = 0; i < y.size(); ++i) (i < 25 ? value : beyond) += double{lobe[i]} * double{y[i]};
-      value += beyond;
-      for (std::size_t i = 0; i < expected.size(); ++i)
-        expected[i] += value * double{y[i]} * 2.0 * double{std::numbers::pi_v<float>} / kDirections;
-      lost += beyond * double{y[0]} * 2.0 * double{std::numbers::pi_v<float>} / kDirections;
-    }
-  }
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(double{left[i]}, expected[i], 0.01) << i;
-  EXPECT_GT(std::abs(lost), 0.02);  // so that the test can tell
-}
-
 // Makes kernels with nothing in the bands that are kept: a second pass has light only if the first one stored
 // it in the bands above.
-TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
+TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernelInEveryPass) {
   constexpr int kExit = 7;
   const Transport t(corner(true, true), true);
   std::array<float, kExit * kExit> lobe{};

@@ -1,5 +1,5 @@
 // Tests what the plan says about glossy surfaces.
-#include "baker/effects/effect_list.hpp"
+#include "baker/plan/effect_plan.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -1,6 +1,4 @@
 // Tests transfer grids that are too coarse for their medium.
-#include "baker/effects/volume/fit_within_voxels.hpp"
-
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -8,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/effects/volume/scattering.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/effects/volume/volume_rays.hpp"
 #include "runtime/sh/basis.hpp"
@@ -92,11 +91,10 @@ TEST(FitWithinVoxels, BringsWhatGoesOutOfAMediumOfShortFreePathsNearer) {
 
 TEST(FitWithinVoxels, LeavesThinMediaAlone) {
   const Fog fog = cube(2.0f);
-  VolumeTransfer transfer = transferOf(fog, gridOf(9, 2, 256));
-  const std::vector<float> before = transfer.vectors;
-  Progress progress;
-  ASSERT_TRUE(fitWithinVoxels(fog.medium(), gridOf(9, 2, 256), {}, nullptr, transfer, {progress}));
-  EXPECT_EQ(transfer.vectors, before);
+  VolumeSettings settings = gridOf(9, 2, 256);
+  const std::vector<float> before = transferOf(fog, settings).vectors;
+  settings.fit_within_voxels = true;
+  EXPECT_EQ(transferOf(fog, settings).vectors, before);
 }
 
 // Tests a baked volume as other groups see it.

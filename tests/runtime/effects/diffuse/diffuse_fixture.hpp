@@ -12,7 +12,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/streaming/loader.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::testing {
 
@@ -108,8 +108,7 @@ class BundleMaker {
       addDraw(made, options, g, glossy_outputs, mapped, surface_cells * options.samples);
     if (options.proxy_triangles > 0) {
       group.proxy = 0;
-      made.proxies.push_back(
-          {.group = bundle::GroupIndex{g}, .proxy = makeProxy(options, group.sample_count)});
+      made.proxies.push_back({{bundle::GroupIndex{g}}, makeProxy(options, group.sample_count)});
     }
     description.groups.push_back(std::move(group));
   }
@@ -165,7 +164,7 @@ class BundleMaker {
       rows.weights.push_back(1.0f);
       rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
     }
-    made.rows.push_back(streaming::WeightsChunk{.draw = index, .rows = std::move(rows)});
+    made.rows.push_back(streaming::WeightsChunk{{index}, std::move(rows)});
   }
 
   bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
@@ -180,8 +179,7 @@ class BundleMaker {
       cell.light_probes.clear();
       for (std::uint32_t k = 1; k < options.light_probes; ++k) cell.light_probes.push_back(k);
       cell.light_weights = 0;
-      streaming::LightWeightsChunk ready{
-          .group = bundle::GroupIndex{g}, .cell = bundle::CellIndex{c}, .samples = {}};
+      streaming::LightWeightsChunk ready{{bundle::GroupIndex{g}, bundle::CellIndex{c}}, {}};
       for (std::uint32_t s = 0; s < options.samples; ++s)
         ready.samples.push_back(lightWeights(options.light_probes - 1));
       made.light_weights.push_back(std::move(ready));
@@ -235,12 +233,10 @@ class BundleMaker {
     for (std::uint32_t s = 0; s < options.samples; ++s)
       cluster_of.push_back(s == 0 ? 0 : below(options.clusters));
     const std::vector<std::uint32_t> counts = transfer::planeCounts(codebook, cluster_of);
+    const streaming::CodebookRequest place{bundle::GroupIndex{g}, bundle::CellIndex{c},
+                                           bundle::TransferIndex{transfer_index}};
     for (std::uint32_t j = 0; j < counts.size(); ++j) {
-      streaming::PlaneChunk plane{.group = bundle::GroupIndex{g},
-                                  .cell = bundle::CellIndex{c},
-                                  .transfer = bundle::TransferIndex{transfer_index},
-                                  .plane = bundle::PlaneIndex{j},
-                                  .codes = {}};
+      streaming::PlaneChunk plane{{place, bundle::PlaneIndex{j}}, {}};
       for (std::uint32_t i = 0; i < counts[j] * bitsOf(j) / 8; ++i)
         plane.codes.push_back(static_cast<std::byte>(below(256)));
       made.planes.back().push_back(std::move(plane));
@@ -249,11 +245,7 @@ class BundleMaker {
     }
     std::vector<std::uint32_t> positions = transfer::positionsOf(cluster_of, options.clusters);
     for (std::uint32_t& position : positions) position |= cluster_of[position] << 16;
-    made.codebooks.back().push_back({.group = bundle::GroupIndex{g},
-                                     .cell = bundle::CellIndex{c},
-                                     .transfer = bundle::TransferIndex{transfer_index},
-                                     .codebook = std::move(codebook),
-                                     .positions = std::move(positions)});
+    made.codebooks.back().push_back({place, std::move(codebook), std::move(positions)});
     return transfer;
   }
 
@@ -275,8 +267,8 @@ class BundleMaker {
     primitive.vertex_count = options.vertices;
     primitive.index_count = static_cast<std::uint32_t>(data.indices.size());
     auto& primitives = made.description.meshes[g].primitives;
-    made.meshes.push_back(streaming::MeshChunk{
-        .mesh = g, .primitive = static_cast<std::uint32_t>(primitives.size()), .data = std::move(data)});
+    made.meshes.push_back(
+        streaming::MeshChunk{{g, static_cast<std::uint32_t>(primitives.size())}, std::move(data)});
     primitives.push_back(primitive);
   }
 

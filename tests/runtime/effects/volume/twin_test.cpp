@@ -343,7 +343,7 @@ TEST(VolumeRectangle, HoldsEveryPixelWhoseRayMeetsTheBox) {
             march(medium, {begin, glm::normalize(end - begin), 0.0f, glm::distance(begin, end)});
         const auto px = static_cast<std::int32_t>(x), py = static_cast<std::int32_t>(y);
         const bool inside =
-            px >= found.x && px < found.x + found.width && py >= found.y && py < found.y + found.height;
+            px >= found.first.x && px < found.end.x && py >= found.first.y && py < found.end.y;
         if (gathered.a > 0.0f) {
           ASSERT_TRUE(inside) << "view " << i;
           ++hits;
