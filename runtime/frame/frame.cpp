@@ -120,8 +120,7 @@ StepCounts::StepCounts() {
            "neighborhood_pairs", "neighborhood_receivers", "neighborhood_arrivals",
            "neighborhood_vertex_receivers", "neighborhood_vertex_receivers_shaded",
            "neighborhood_arrivals_left_out"});
-  declare({"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
-           "capture_bodies_drawn", "capture_triangles", "capture_pixels"});
+  declare({"light_probes_captured", "light_probes_waiting", "capture_bodies_drawn"});
   declare({"shadow_cubes_drawn", "key_lights", "key_maps_drawn", "reflection_probes",
            "reflection_probes_captured"});
   declare({"draws_out_of_view", "volumes_shaded", "volume_slabs_written", "volumes_out_of_view",

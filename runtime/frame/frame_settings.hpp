@@ -13,7 +13,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/evaluate/samples.hpp"
-#include "runtime/lighting/capture_scene.hpp"
+#include "runtime/lighting/capture_plan.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"

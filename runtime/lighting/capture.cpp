@@ -267,7 +267,6 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
                      std::span<const CapturePoint> points, gpu::Counters& counters) {
   load_ = {.pages = static_cast<std::uint32_t>(plan.pages.size()),
            .points = static_cast<std::uint32_t>(plan.points.size()),
-           .tiles = static_cast<std::uint32_t>(plan.tiles.size()),
            .draws = static_cast<std::uint32_t>(plan.draws.size())};
   std::vector<PointRecord> records;
   std::vector<TexelRecord> texels;
@@ -292,7 +291,6 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   }
   run_.first_texels.push_back(static_cast<std::uint32_t>(texels.size()));
   run_.first_words.push_back(static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord));
-  load_.pixels = std::uint64_t{texels.size()} * subsamples * subsamples;
   run_.word_count = lookups.size() / kLookupsPerWord;
 
   std::vector<DrawRecord> draws;
@@ -320,7 +318,6 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
     indices.insert(indices.end(), front_only.begin(), front_only.end());
     range.end = static_cast<std::uint32_t>(indices.size());
   }
-  load_.triangles = indices.size() / 3;
 
   const auto give = [&](gpu::Table& table, auto& values) {
     table.assign(std::span(std::as_const(values)));

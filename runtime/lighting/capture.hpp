@@ -24,7 +24,6 @@
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/capture_plan.hpp"
-#include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/basis.hpp"
 
@@ -179,10 +178,9 @@ class Capture {
   // has not finished and `wait` is false.
   std::optional<std::vector<CapturedLight>> take(bool wait);
 
-  // States how much work the cube maps of the last run took. Pixels are subsamples.
+  // States how much work the cube maps of the last run took.
   struct Load {
-    std::uint32_t pages = 0, points = 0, tiles = 0, draws = 0;
-    std::uint64_t triangles = 0, pixels = 0;
+    std::uint32_t pages = 0, points = 0, draws = 0;
   };
   const Load& load() const { return load_; }
 

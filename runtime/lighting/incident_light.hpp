@@ -24,7 +24,7 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/capture.hpp"
-#include "runtime/lighting/capture_scene.hpp"
+#include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/local_light.hpp"

@@ -115,10 +115,8 @@ void Parting::divideDiscs() {
       discs_.push_back({disc, source, whole.flux, value, lossAsFlux(whole), discPoints(whole), false});
       continue;
     }
-    const DiscDivision dividing{.radius_rad = static_cast<double>(options_.largest_radius_rad),
-                                .most = options_.most,
-                                .allowed = kShapeShare * options_.least_loss * flux_};
-    for (DiscPiece& part : dividedDisc(whole, dividing)) {
+    for (DiscPiece& part : dividedDisc(whole, static_cast<double>(options_.largest_radius_rad), options_.most,
+                                       kShapeShare * options_.least_loss * flux_)) {
       // The piece has the same flux on its own area.
       const auto share = static_cast<float>(part.piece.flux / whole.flux * solidAngle(whole.radius_rad) /
                                             solidAngle(part.piece.radius_rad));

@@ -123,13 +123,10 @@ struct DiscPiece {
   LightPiece piece;
   std::vector<LightPoint> points;  // points of the part of the disc that it represents
 };
-struct DiscDivision {
-  double radius_rad = 0.14;  // of a piece, approximate
-  std::size_t most = 16;     // maximum number of pieces, at least 3
-  double allowed = 0.0;      // flux: more pieces are used until their round shapes lose no more than this
-};
-// Divides a uniform disc into pieces of about equal size.
-std::vector<DiscPiece> dividedDisc(const LightPiece& disc, const DiscDivision& division);
+// Divides a uniform disc into pieces of about equal size and about this radius, at most `most` (at least 3).
+// More pieces are used until their round shapes lose no more flux than allowed.
+std::vector<DiscPiece> dividedDisc(const LightPiece& disc, double radius_rad, std::size_t most,
+                                   double allowed);
 
 // Searches pictures of light in blocks of texels for what is brighter than a threshold that is lowered step
 // by step. It takes environment maps and returns all their light on a FluxGrid, and points of light above the

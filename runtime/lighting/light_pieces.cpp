@@ -272,15 +272,16 @@ void addDisc(FluxGrid& grid, const LightPiece& disc, double factor) {
 }
 
 // A disc is never divided into two halves, which are far from round.
-std::vector<DiscPiece> dividedDisc(const LightPiece& disc, const DiscDivision& division) {
-  const std::size_t most = std::max<std::size_t>(division.most, 3);
-  const double areas = std::ceil(solidAngle(disc.radius_rad) / solidAngle(division.radius_rad));
+std::vector<DiscPiece> dividedDisc(const LightPiece& disc, double radius_rad, std::size_t most,
+                                   double allowed) {
+  most = std::max<std::size_t>(most, 3);
+  const double areas = std::ceil(solidAngle(disc.radius_rad) / solidAngle(radius_rad));
   for (auto count = static_cast<std::size_t>(std::clamp(areas, 3.0, static_cast<double>(most)));; ++count) {
     std::vector<DiscPiece> pieces = dividedInto(disc, count);
     FluxGrid misshapen;
     addDisc(misshapen, disc);
     for (const DiscPiece& part : pieces) addDisc(misshapen, part.piece, -1.0);
-    if (count == most || std::sqrt(misshapen.lostPower(1)) <= division.allowed) return pieces;
+    if (count == most || std::sqrt(misshapen.lostPower(1)) <= allowed) return pieces;
   }
 }
 

@@ -12,7 +12,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/lighting/capture_scene.hpp"
+#include "runtime/lighting/capture_plan.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/sh/basis.hpp"
 

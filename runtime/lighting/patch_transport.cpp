@@ -88,7 +88,7 @@ Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
   }
   for (std::size_t t = 0; t < tree_.size(); ++t) {
     const std::uint32_t parts = partsFor(weighed[t], wanted);
-    levels_.push_back({{.parts = parts, .first = patches_.size()}});
+    levels_.push_back({Level{.parts = parts, .first = patches_.size()}});
     const auto& [a, b, c] = tree_[t].corners;
     const auto cornerAt = [&](std::uint32_t column, std::uint32_t row) {
       const glm::vec2 at = glm::vec2(column, row) / static_cast<float>(parts);

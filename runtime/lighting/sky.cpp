@@ -259,13 +259,7 @@ bool hasWideKeys(const Environment& environment) {
   return wide > 0.5f * all;
 }
 
-}  // namespace
-
-std::uint64_t PrefilteredEnvironment::sourceVersion(const Environment& environment) {
-  return hasWideKeys(environment) ? environment.lightsVersion() : environment.restVersion();
-}
-
-struct PrefilteredEnvironment::Source {
+struct PrefilterSource {
   const gpu::Texture& sky;  // in the lights' own frame
   std::span<const Disc> discs;
   bool pictured = false;  // false: everything that is not a disc is constant
@@ -273,38 +267,8 @@ struct PrefilteredEnvironment::Source {
   std::span<const ReflectedLobe> lobes;
 };
 
-Result<PrefilteredEnvironment> PrefilteredEnvironment::make(const Environment& environment, const Sky& sky,
-                                                            gpu::Counters& counters) {
-  Result<gpu::Program> program = gpu::Program::create(
-      "prefiltered environment", {{GL_COMPUTE_SHADER, "prefiltered_environment.comp"}}, kLightingShaders);
-  if (!program) return failAgain(program.error());
-  Result<gpu::Program> weigh = gpu::Program::create(
-      "reflected source", {{GL_COMPUTE_SHADER, "prefiltered_source.comp"}}, kLightingShaders);
-  if (!weigh) return failAgain(weigh.error());
-  PrefilteredEnvironment made;
-  std::vector<ReflectedLobe> lobes;
-  for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
-    lobes.push_back(makeReflectedLobe(roughnessOfLevel(level, kReflectedLevels)));
-    for (std::uint32_t l = 0; l < 8; ++l)
-      made.values_.bands[2 * level + l / 4][static_cast<int>(l % 4)] = lobes.back().bands[l];
-  }
-  made.has_whole_ = hasWideKeys(environment);
-  for (std::size_t set = 0; set < Environment::kSets; ++set) {
-    const Environment::Part lights = environment.shownOf(set);
-    const Environment::Part rest = environment.restOf(set);
-    const bool parted = !environment.keysOf(set).empty();
-    const gpu::Texture rest_sky = parted ? skyCube(rest.environment_maps, rest.constant) : gpu::Texture();
-    const auto prefilterOf = [&](const gpu::Texture& source, std::span<const Disc> discs) {
-      return prefilter({source, discs, !lights.environment_maps.empty(), *program, *weigh, lobes}, counters);
-    };
-    made.cubes_[set] = prefilterOf(parted ? rest_sky : sky.cube(set), rest.discs);
-    if (made.has_whole_) made.whole_[set] = prefilterOf(sky.cube(set), lights.discs);
-  }
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  return made;
-}
-
-gpu::Texture PrefilteredEnvironment::prefilter(const Source& from, gpu::Counters& counters) {
+// Makes P(L) of one set of lights, with roughness along the mip levels.
+gpu::Texture prefilter(const PrefilterSource& from, gpu::Counters& counters) {
   gpu::Table angles("lobe"), discs_table("reflected discs");
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   const gpu::Texture source = withLevels(from.sky, from.weigh, counters);
@@ -340,6 +304,43 @@ gpu::Texture PrefilteredEnvironment::prefilter(const Source& from, gpu::Counters
     ++counters.dispatches;
   }
   return cube;
+}
+
+}  // namespace
+
+std::uint64_t PrefilteredEnvironment::sourceVersion(const Environment& environment) {
+  return hasWideKeys(environment) ? environment.lightsVersion() : environment.restVersion();
+}
+
+Result<PrefilteredEnvironment> PrefilteredEnvironment::make(const Environment& environment, const Sky& sky,
+                                                            gpu::Counters& counters) {
+  Result<gpu::Program> program = gpu::Program::create(
+      "prefiltered environment", {{GL_COMPUTE_SHADER, "prefiltered_environment.comp"}}, kLightingShaders);
+  if (!program) return failAgain(program.error());
+  Result<gpu::Program> weigh = gpu::Program::create(
+      "reflected source", {{GL_COMPUTE_SHADER, "prefiltered_source.comp"}}, kLightingShaders);
+  if (!weigh) return failAgain(weigh.error());
+  PrefilteredEnvironment made;
+  std::vector<ReflectedLobe> lobes;
+  for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
+    lobes.push_back(makeReflectedLobe(roughnessOfLevel(level, kReflectedLevels)));
+    for (std::uint32_t l = 0; l < 8; ++l)
+      made.values_.bands[2 * level + l / 4][static_cast<int>(l % 4)] = lobes.back().bands[l];
+  }
+  made.has_whole_ = hasWideKeys(environment);
+  for (std::size_t set = 0; set < Environment::kSets; ++set) {
+    const Environment::Part lights = environment.shownOf(set);
+    const Environment::Part rest = environment.restOf(set);
+    const bool parted = !environment.keysOf(set).empty();
+    const gpu::Texture rest_sky = parted ? skyCube(rest.environment_maps, rest.constant) : gpu::Texture();
+    const auto prefilterOf = [&](const gpu::Texture& source, std::span<const Disc> discs) {
+      return prefilter({source, discs, !lights.environment_maps.empty(), *program, *weigh, lobes}, counters);
+    };
+    made.cubes_[set] = prefilterOf(parted ? rest_sky : sky.cube(set), rest.discs);
+    if (made.has_whole_) made.whole_[set] = prefilterOf(sky.cube(set), lights.discs);
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return made;
 }
 
 void PrefilteredEnvironment::update(const Environment& environment, int order, sh::Window window,

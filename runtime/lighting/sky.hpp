@@ -103,10 +103,6 @@ class PrefilteredEnvironment {
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
 
  private:
-  // Makes P(L) of one set of lights, with roughness along the mip levels.
-  struct Source;
-  static gpu::Texture prefilter(const Source& source, gpu::Counters& counters);
-
   PrefilteredEnvironment() : block_("reflection") {}
 
   std::array<gpu::Texture, Environment::kSets> cubes_, whole_;

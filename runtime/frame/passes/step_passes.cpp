@@ -306,14 +306,7 @@ Result<void> capture(FrameContext& frame) {
   const lighting::IncidentCounts& counts = incident->counts();
   frame.count("light_probes_captured", counts.captured);
   frame.count("light_probes_waiting", counts.waiting);
-  if (counts.captured > 0) {
-    const lighting::Capture::Load& load = incident->captures().load();
-    frame.count("capture_pages", load.pages);
-    frame.count("capture_tiles", load.tiles);
-    frame.count("capture_bodies_drawn", load.draws);
-    frame.count("capture_triangles", load.triangles);
-    frame.count("capture_pixels", load.pixels);
-  }
+  if (counts.captured > 0) frame.count("capture_bodies_drawn", incident->captures().load().draws);
   if (frame.counters().dispatches > 0) frame.because("light between bodies");
   return done;
 }
