@@ -18,7 +18,6 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/cache/cache.hpp"
-#include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/source_watch.hpp"

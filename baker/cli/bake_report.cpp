@@ -1,5 +1,3 @@
-#include "baker/cli/bake_report.hpp"
-
 #include <algorithm>
 #include <utility>
 

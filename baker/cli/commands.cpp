@@ -112,11 +112,11 @@ ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as, cons
     std::fflush(stderr);
   };
   if (json) print(seen_as.look(progress));  // so that a program learns at once what is baked
-  watch_.emplace(progress, std::move(seen_as), every, print, /*at_end=*/false);
+  watch_ = watchProgress(progress, std::move(seen_as), every, print, /*at_end=*/false);
 }
 
 ProgressLine::~ProgressLine() {
-  watch_.reset();
+  watch_ = {};  // ends it
   if (terminal_) fmt::print(stderr, "\r\033[K");
 }
 

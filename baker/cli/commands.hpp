@@ -12,6 +12,9 @@
 #include <string>
 #include <thread>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "baker/bake/bake.hpp"
 #include "baker/jobs/progress.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/result.hpp"
@@ -21,8 +24,6 @@ class App;
 }
 
 namespace lambent::baker {
-
-struct BakeOptions;
 
 // A command returns the exit code: 0 done, 1 failed.
 using Command = std::function<int()>;
@@ -75,8 +76,28 @@ class ProgressLine {
 
  private:
   bool terminal_ = false;
-  std::optional<ProgressWatch> watch_;
+  std::jthread watch_;
 };
+
+// These print what a bake came to, as text or as JSON (bake_report.cpp).
+
+struct FinishedBake {
+  const std::filesystem::path& output;
+  const BakeOptions& options;
+  const BakeReport& report;
+};
+
+// Returns what the bake measured of its pictures' error, as a sentence's end and as JSON, which is null if
+// nothing was measured.
+std::string pictureErrorText(const bundle::PictureError& error);
+nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error);
+
+// Returns whether a bound on the error, or a limit, was missed.
+bool missesBound(const FinishedBake& bake);
+
+// Says in its last line if a bound is missed, and what would help.
+void printReport(const FinishedBake& bake);
+nlohmann::json reportJson(const FinishedBake& bake);
 
 // While it lives, SIGINT and SIGTERM ask `stop` to stop, and a second one ends the program at once. Construct
 // it before any thread, so that all of them inherit the blocked signals.

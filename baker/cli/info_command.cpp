@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/bundle/container.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <stop_token>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -139,20 +140,21 @@ Expected<BakeResult> Baker::run(const BakeScene& scene, const std::string& outpu
   std::stop_source stop;
   const auto start = std::chrono::steady_clock::now();
   const Result<baker::BakeReport> report = [&] {
-    std::optional<baker::ProgressWatch> watching;
+    std::jthread watching;
     if (watcher) {
       baker::PartSeconds expected;
       if (const auto plan = baker::planFor(baked, state_->options))
         expected = baker::guessBake(baked, *plan, state_->options).seconds;
-      watching.emplace(progress, baker::WholeProgress(std::move(expected)), std::chrono::milliseconds(100),
-                       [&](const baker::WholeProgress::Seen& seen) {
-                         if (!seen.stage.name.empty() && !watcher({.stage = seen.stage.name,
-                                                                   .unit = seen.stage.unit,
-                                                                   .done = seen.stage.done,
-                                                                   .fraction = seen.share,
-                                                                   .seconds_left = seen.seconds_left}))
-                           stop.request_stop();
-                       });
+      watching = baker::watchProgress(
+          progress, baker::WholeProgress(std::move(expected)), std::chrono::milliseconds(100),
+          [&](const baker::WholeProgress::Seen& seen) {
+            if (!seen.stage.name.empty() && !watcher({.stage = seen.stage.name,
+                                                      .unit = seen.stage.unit,
+                                                      .done = seen.stage.done,
+                                                      .fraction = seen.share,
+                                                      .seconds_left = seen.seconds_left}))
+              stop.request_stop();
+          });
     }
     return baker::bake(baked, state_->options, output,
                        {progress, stop.get_token(), state_->cache ? &*state_->cache : nullptr});

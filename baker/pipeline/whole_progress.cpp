@@ -86,18 +86,18 @@ WholeProgress::Seen WholeProgress::look(const Progress& progress) {
   return seen;
 }
 
-ProgressWatch::ProgressWatch(const Progress& progress, WholeProgress whole,
-                             std::chrono::duration<double> every,
-                             std::function<void(const WholeProgress::Seen&)> say, bool at_end)
-    : thread_([&progress, whole = std::move(whole), every, say = std::move(say),
-               at_end](std::stop_token stop) mutable {
-        std::mutex lock;
-        std::condition_variable_any ended;  // lets the end come before the next turn
-        std::unique_lock hold(lock);
-        while (!ended.wait_for(hold, stop, every, [&] { return stop.stop_requested(); }))
-          say(whole.look(progress));
-        if (at_end) say(whole.look(progress));
-      }) {}
+std::jthread watchProgress(const Progress& progress, WholeProgress whole, std::chrono::duration<double> every,
+                           std::function<void(const WholeProgress::Seen&)> say, bool at_end) {
+  return std::jthread([&progress, whole = std::move(whole), every, say = std::move(say),
+                       at_end](const std::stop_token& stop) mutable {
+    std::mutex lock;
+    std::condition_variable_any ended;  // lets the end come before the next turn
+    std::unique_lock hold(lock);
+    while (!ended.wait_for(hold, stop, every, [&] { return stop.stop_requested(); }))
+      say(whole.look(progress));
+    if (at_end) say(whole.look(progress));
+  });
+}
 
 namespace {
 

@@ -52,16 +52,10 @@ class WholeProgress {
   double before_s_, after_s_, share_ = 0.0;
 };
 
-// While it lives, says how far a job is: every so often and, if wanted, once at the end, on a thread of its
-// own. The progress must outlive it.
-class ProgressWatch {
- public:
-  ProgressWatch(const Progress& progress, WholeProgress whole, std::chrono::duration<double> every,
-                std::function<void(const WholeProgress::Seen&)> say, bool at_end = true);
-
- private:
-  std::jthread thread_;
-};
+// Returns a thread that says how far a job is: every so often and, if wanted, once at the end. The progress
+// must outlive it.
+std::jthread watchProgress(const Progress& progress, WholeProgress whole, std::chrono::duration<double> every,
+                           std::function<void(const WholeProgress::Seen&)> say, bool at_end = true);
 
 // Guesses what a bake takes from its plan, its vertices and which way its faces look, which costs nothing. A
 // guess may be wrong by a factor of two, of small scenes by four.

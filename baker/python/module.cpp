@@ -144,12 +144,6 @@ py::tuple tupleOf(const Vec3& v) {
   return py::make_tuple(v.x, v.y, v.z);
 }
 
-// Holds the arrays of a mesh while it is added.
-struct MeshArrays {
-  std::vector<Vec3> positions, normals;
-  std::vector<std::uint32_t> indices;
-};
-
 Vec3 colorOf(const py::handle& value, const std::string& name) {
   const std::vector<Vec3> one = vectorsOf(py::cast<Floats>(value), name);
   if (one.size() != 1) raise({name, "is no colour", "give three numbers"});
@@ -157,19 +151,20 @@ Vec3 colorOf(const py::handle& value, const std::string& name) {
 }
 
 void addMesh(BakeScene& scene, const py::dict& described) {
-  MeshArrays arrays;
+  std::vector<Vec3> positions, normals;  // until the mesh has been added
+  std::vector<std::uint32_t> indices;
   BakeMesh mesh;
   for (const auto& [key, value] : described) {
     const auto name = py::cast<std::string>(key);
     if (name == "name")
       mesh.name = py::cast<std::string>(value);
     else if (name == "positions")
-      arrays.positions = vectorsOf(py::cast<Floats>(value), name);
+      positions = vectorsOf(py::cast<Floats>(value), name);
     else if (name == "normals")
-      arrays.normals = vectorsOf(py::cast<Floats>(value), name);
+      normals = vectorsOf(py::cast<Floats>(value), name);
     else if (name == "triangles") {
       const auto words = py::cast<Words>(value);
-      arrays.indices.assign(words.data(), words.data() + words.size());
+      indices.assign(words.data(), words.data() + words.size());
     } else if (name == "albedo")
       mesh.albedo = colorOf(value, name);
     else if (name == "emission")
@@ -189,9 +184,9 @@ void addMesh(BakeScene& scene, const py::dict& described) {
     } else
       raise({name, "is nothing that a mesh has", "see docs/python.md"});
   }
-  mesh.positions = arrays.positions;
-  mesh.normals = arrays.normals;
-  mesh.indices = arrays.indices;
+  mesh.positions = positions;
+  mesh.normals = normals;
+  mesh.indices = indices;
   check(scene.add(mesh));
 }
 

@@ -15,6 +15,7 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 
@@ -191,10 +192,6 @@ constexpr std::size_t kPointsOnLamps = 128;  // of all lamps together
 constexpr std::size_t kBouncers = 64;
 constexpr float kAlbedo = 0.5f;
 
-float luminance(const glm::vec3& color) {
-  return glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
-}
-
 // Sums up the irradiance of each lamp over pi.
 class LampSums : public LightReceiver {
  public:
@@ -203,7 +200,7 @@ class LampSums : public LightReceiver {
   float raysPerSteradian(float) const override { return 0.0f; }
   void addAlong(std::size_t, std::uint32_t, glm::vec3) override {}
   void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) override {
-    sums_[light] += local.z / std::numbers::pi_v<float> * luminance(radiance);
+    sums_[light] += local.z / std::numbers::pi_v<float> * spec::luminanceOf(radiance);
   }
 
  private:
