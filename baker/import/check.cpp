@@ -298,13 +298,20 @@ void checkSparse(const Entry& sparse, std::uint64_t count, std::uint64_t element
   checkExtent(*values, replaced, element, /*strided=*/false);
 }
 
+// The list, in CheckedDocument::used, of views that only accessors without elements name.
+constexpr const char* kEmpty = "empty views";
+
 void checkAccessor(const Entry& accessor) {
   const std::uint64_t component = componentBytes(accessor.required("componentType"));
   if (component == 0) refuse("{} has an unknown componentType", accessor.name);
   const std::uint64_t element = elementBytes(accessor.text("type"), component);
   if (element == 0) refuse("{} has an unknown type", accessor.name);
   const std::uint64_t count = accessor.required("count");
-  if (count == 0) return;
+  if (count == 0) {
+    if (const json* view = accessor.find("bufferView"); view != nullptr && view->is_number_unsigned())
+      accessor.document.used[kEmpty].insert(view->get<std::uint64_t>());
+    return;
+  }
   if (accessor.find("bufferView") != nullptr)
     checkExtent(accessor, count, element, /*strided=*/true);
   else if (count > kMaxImplicitCount)
@@ -357,7 +364,8 @@ void checkList(const Entry& root, const char* key, const char* what, const json&
     if (root.document.used[key].contains(i++)) return check(entry);
     try {
       check(entry);
-      if (memberOf(entry.json, {"byteLength"}) == 0) refuse("{} has no bytes", entry.name);
+      if (memberOf(entry.json, {"byteLength"}) == 0 && !root.document.used[kEmpty].contains(i - 1))
+        refuse("{} has no bytes", entry.name);
     } catch (const Error& error) {
       root.document.warnings.push_back(error.problem + ", but nothing reads it");
       entry.json = empty;

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
+#include "baker/refine/flat_faces.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/samples.hpp"
 
@@ -361,6 +362,17 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
     }
   }
   return true;
+}
+
+void GroupRefiner::fillFaces(const RigidGroup& group, const GroupGeometry& geometry, double bound,
+                             const CopiesOfMeshes& copies, std::size_t room,
+                             std::vector<std::vector<bundle::MeshData>>& meshes) const {
+  std::vector<SeenTriangle> seen(geometry.triangles.size());
+  for (const Part& part : parts_) {
+    seen[part.triangle].share += part.seen;
+    seen[part.triangle].excess += part.square_error - bound * bound * part.seen;
+  }
+  fillFlatFaces(group, geometry, copies, importance_, seen, room, meshes);
 }
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,

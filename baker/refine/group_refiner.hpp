@@ -262,6 +262,11 @@ class GroupRefiner {
   std::uint64_t raysTraced() const { return few_.raysTraced() + many_.raysTraced(); }
   std::uint64_t raysKept() const { return few_.raysKept() + many_.raysKept(); }
 
+  // Fills flat faces that are beyond the bound as they were measured (flat_faces.hpp).
+  void fillFaces(const RigidGroup& group, const GroupGeometry& geometry, double bound,
+                 const CopiesOfMeshes& copies, std::size_t room,
+                 std::vector<std::vector<bundle::MeshData>>& meshes) const;
+
   // Marks edges of the worst triangles in regions beyond the bound, until what remains there is within it or
   // `room` new vertices are spent. Returns how many edges were marked.
   std::size_t markWorst(std::size_t group, const GroupGeometry& geometry, double bound, std::size_t& room,

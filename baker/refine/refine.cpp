@@ -41,6 +41,10 @@ constexpr double kExpectedProbes = 7.0;
 // most that it is taken to leave.
 constexpr double kLeftByRound = 0.5, kLeastLeft = 0.1, kMostLeft = 0.9;
 
+// Splits that leave so large an error with half of the vertices that they may add are taken back, and flat
+// faces filled. Elsewhere splits reach the bound with fewer vertices.
+constexpr double kHopeless = 0.25;
+
 // Each round of cuts shows where the rest of an edge is cut, seen from its other end.
 constexpr int kMostLeakRounds = 8;
 
@@ -89,7 +93,8 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
 }
 
 // Splits edges round after round: first those over which light leaks, since no number of other splits mends
-// these, then those of the worst triangles, until the error is within the bound.
+// these, then those of the worst triangles, until the error is within the bound. Where that would take too
+// many, large flat faces are filled with regular triangles first (flat_faces.hpp).
 class Rounds {
  public:
   // Everything must outlive it.
@@ -116,7 +121,14 @@ class Rounds {
     }
     if (auto measured = measure(); !measured) return measured;
     report_.error_before = report_.error_after;
+    std::optional<std::vector<std::vector<bundle::MeshData>>> whole = meshes_;
+    const auto fillIfHopeless = [&, half = room() / 2]() -> Result<void> {
+      if (!whole || room() >= half || report_.error_after <= kHopeless) return {};
+      meshes_ = *std::exchange(whole, std::nullopt);
+      return fillFaces();
+    };
     if (auto cut = cutLeaks(); !cut) return cut;
+    if (auto filled = fillIfHopeless(); !filled) return filled;
     double left_by_round = kLeftByRound;
     std::uint64_t done_before = 0;
     for (int round = 0; round < options_.rounds && room() > 0; ++round) {
@@ -132,6 +144,7 @@ class Rounds {
       if (auto measured = measure(); !measured) return measured;
       const double ratio = error > 0.0 ? report_.error_after / error : 0.0;
       left_by_round = std::clamp(ratio * ratio, kLeastLeft, kMostLeft);
+      if (auto filled = fillIfHopeless(); !filled) return filled;
     }
     report_.at_limit = report_.error_after > double{options_.bound};
     return {};
@@ -182,6 +195,19 @@ class Rounds {
     edges.split(meshes_);
     geometries_ = geometriesOf(from_, meshes_);
     return marked;
+  }
+
+  // Fills flat faces of the meshes before any split.
+  Result<void> fillFaces() {
+    geometries_ = geometriesOf(from_, meshes_);
+    if (auto measured = measure(); !measured) return measured;
+    for (std::size_t g = 0; g < refiners_.size(); ++g)
+      if (refiners_[g])
+        refiners_[g]->fillFaces(from_.groups[g], geometries_[g], double{options_.bound}, copies_, room(),
+                                meshes_);
+    geometries_ = geometriesOf(from_, meshes_);
+    if (auto measured = measure(); !measured) return measured;
+    return cutLeaks();
   }
 
   Result<void> cutLeaks() {
