@@ -118,35 +118,65 @@ glm::vec2 albedo(const glm::vec2& alpha, const glm::vec3& view, std::uint32_t po
   return glm::vec2(sum / static_cast<double>(points));
 }
 
-float node(std::size_t i, std::uint32_t nodes) {
+struct NodePlace {
+  std::size_t below = 0;
+  float share = 0.0f;
+};
+NodePlace between(float at, std::size_t nodes) {
+  if (nodes < 2) return {};
+  const float scaled = std::clamp(at, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
+  const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
+  return {below, scaled - static_cast<float>(below)};
+}
+
+float node(std::size_t i, std::size_t nodes) {
   return nodes < 2 ? 0.0f : static_cast<float>(i) / static_cast<float>(nodes - 1);
 }
 
 }  // namespace
 
-bundle::BrdfTable albedoTable(bool anisotropic) {
-  bundle::BrdfTable out{.order = 1,
-                        .angles = anisotropic ? 33u : 97u,
-                        .azimuths = anisotropic ? 7u : 1u,
-                        .roughnesses = anisotropic ? 13u : 33u,
-                        .strengths = anisotropic ? 7u : 1u,
-                        .values = {}};
-  out.values.resize(out.nodes() * out.nodeValues());
-  parallelRanges(out.nodes() / out.angles, 1, {}, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first * out.angles; i < last * out.angles; ++i) {
-      const std::size_t row = i / out.angles;
-      const float past = 1.0f - std::pow(node(i % out.angles, out.angles), 2.0f);
-      const float cosine = 1.0f - past * past;  // the inverse of angleAxis()
-      const float side = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
-      const float phi = kPi / 2 * node(row % out.azimuths, out.azimuths);
-      const glm::vec2 alpha = ggxAlpha(node(row / out.azimuths % out.roughnesses, out.roughnesses),
-                                       node(row / (out.azimuths * out.roughnesses), out.strengths));
-      const glm::vec2 parts = albedo(alpha, {side * std::cos(phi), side * std::sin(phi), cosine},
-                                     anisotropic ? kAnisotropicPoints : kIsotropicPoints);
-      out.values[2 * i] = parts.x, out.values[2 * i + 1] = parts.y;
+AlbedoTable AlbedoTable::build(bool anisotropic) {
+  AlbedoTable out;
+  out.angles_ = anisotropic ? 33 : 97;
+  out.azimuths_ = anisotropic ? 7 : 1;
+  out.roughnesses_ = anisotropic ? 13 : 33;
+  out.strengths_ = anisotropic ? 7 : 1;
+  const std::size_t rows = out.strengths_ * out.roughnesses_ * out.azimuths_;
+  out.values_.resize(rows * out.angles_);
+  parallelRanges(rows, 1, {}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const float phi = kPi / 2 * node(row % out.azimuths_, out.azimuths_);
+      const glm::vec2 alpha = ggxAlpha(node(row / out.azimuths_ % out.roughnesses_, out.roughnesses_),
+                                       node(row / (out.azimuths_ * out.roughnesses_), out.strengths_));
+      for (std::size_t a = 0; a < out.angles_; ++a) {
+        const float root = node(a, out.angles_), cosine = std::max(root * root, kLeastCosine);
+        const float side = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
+        out.values_[row * out.angles_ + a] =
+            albedo(alpha, {side * std::cos(phi), side * std::sin(phi), cosine},
+                   anisotropic ? kAnisotropicPoints : kIsotropicPoints);
+      }
     }
   });
   return out;
+}
+
+glm::vec2 AlbedoTable::at(const glm::vec3& view, float roughness, float strength) const {
+  const NodePlace places[4] = {between(std::sqrt(std::max(view.z, 0.0f)), angles_),
+                               between(std::atan2(std::abs(view.y), std::abs(view.x)) / (kPi / 2), azimuths_),
+                               between(roughness, roughnesses_), between(strength, strengths_)};
+  const std::size_t strides[4] = {1, angles_, angles_ * azimuths_, angles_ * azimuths_ * roughnesses_};
+  glm::vec2 sum(0.0f);
+  for (unsigned corner = 0; corner < 16; ++corner) {
+    std::size_t at = 0;
+    float weight = 1.0f;
+    for (unsigned axis = 0; axis < 4; ++axis) {
+      const bool above = (corner >> axis & 1u) != 0;
+      weight *= above ? places[axis].share : 1.0f - places[axis].share;
+      at += strides[axis] * (places[axis].below + (above ? 1 : 0));
+    }
+    if (weight > 0.0f) sum += weight * values_[at];
+  }
+  return sum;
 }
 
 }  // namespace lambent::baker::reference

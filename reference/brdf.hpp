@@ -5,12 +5,12 @@
 // mistakes there.
 #pragma once
 
+#include <vector>
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-
-#include "runtime/bundle/brdf_table.hpp"
 
 namespace lambent::baker {
 class Brdf;
@@ -50,9 +50,23 @@ struct Reflector {
 };
 
 // Tabulates the directional albedo of the GGX lobe by view direction, roughness and anisotropy, as the two
-// factors of F0 and F90, each a lobe of one value. The diffuse part of a material is reduced by this albedo.
-// The reference integrates the table itself, with an error of 0.1 % (anisotropic: 0.5 %).
-bundle::BrdfTable albedoTable(bool anisotropic);
+// factors of F0 and F90. The diffuse part of a material is reduced by this albedo. The reference integrates
+// the table itself, with an error of 0.1 % (anisotropic: 0.5 %).
+
+class AlbedoTable {
+ public:
+  AlbedoTable() = default;
+  static AlbedoTable build(bool anisotropic);
+
+  bool empty() const { return values_.empty(); }
+  // Returns the factors of F0 and F90. `view` is a unit vector in local space with z > 0; roughness and
+  // strength are 0..1.
+  glm::vec2 at(const glm::vec3& view, float roughness, float strength) const;
+
+ private:
+  std::size_t angles_ = 0, azimuths_ = 1, roughnesses_ = 0, strengths_ = 1;
+  std::vector<glm::vec2> values_;  // [strength][roughness][azimuth][angle]
+};
 
 // Decides which light a glossy surface gets from directions below its own plane (docs/conventions.md,
 // "Materials"). Lobes follow the smooth normal and normal maps, so parts of them can lie below the triangle.

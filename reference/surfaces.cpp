@@ -135,9 +135,9 @@ void Surfaces::buildTables() {
     const gltf::Material& material = surface.material;
     const bool bare = material.metallic >= 1.0f && material.metallic_roughness_texture.texture < 0;
     if (material.isDiffuse() || surface.measured || bare) continue;
-    if (round_.values.empty()) round_ = albedoTable(/*anisotropic=*/false);
-    if (material.anisotropy > 0.0f && anisotropic_.values.empty())
-      anisotropic_ = albedoTable(/*anisotropic=*/true);
+    if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
+    if (material.anisotropy > 0.0f && anisotropic_.empty())
+      anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
   }
 }
 
@@ -271,10 +271,8 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   out.f0 = glm::mix(dielectric, point.albedo, metal);
   out.f90 = glm::mix(specular, 1.0f, metal);
   if (metal >= 1.0f) return out;  // a metal has no diffuse part
-  std::array<float, 2> parts;
-  bundle::lookUpStored(strength > 0.0f ? anisotropic_ : round_, {out.view.z, out.view.x, out.view.y},
-                       roughness, strength, parts);
-  const glm::vec3 reflected = out.f0 * parts[0] + out.f90 * parts[1];
+  const glm::vec2 parts = (strength > 0.0f ? anisotropic_ : round_).at(out.view, roughness, strength);
+  const glm::vec3 reflected = out.f0 * parts.x + out.f90 * parts.y;
   const float most = std::max({reflected.r, reflected.g, reflected.b});
   out.diffuse = (1.0f - metal) * std::max(1.0f - most, 0.0f) * point.albedo;
   const float rest = std::max({out.diffuse.r, out.diffuse.g, out.diffuse.b});

@@ -125,7 +125,7 @@ class Surfaces {
   std::vector<glm::vec4> tangents_;  // w = 0 if the file has none
   std::vector<glm::uvec3> triangles_;
   Textures textures_;
-  bundle::BrdfTable round_, anisotropic_;  // albedoTable(); without values if not needed
+  AlbedoTable round_, anisotropic_;
 };
 
 }  // namespace lambent::baker::reference
