@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/brdf/brdf.hpp"
+#include "baker/import/measured_brdf.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "reference/sampler.hpp"
 
@@ -34,8 +34,13 @@ float distribution(const glm::vec2& alpha, const glm::vec3& h) {
   return 1.0f / (kPi * alpha.x * alpha.y * k * k);
 }
 
-// Returns the BRDF times the cosine of s, without the Fresnel factors: F0 multiplies x, F90 multiplies y.
-// Returns 0 if s.z <= 0.
+}  // namespace
+
+glm::vec2 ggxAlpha(float roughness, float strength) {
+  const float alpha = std::max(roughness * roughness, kLeastAlpha);
+  return {glm::mix(alpha, 1.0f, strength * strength), alpha};
+}
+
 glm::vec2 ggxValue(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
   if (s.z <= 0.0f) return glm::vec2(0.0f);
   const glm::vec3 h = glm::normalize(v + s);
@@ -45,7 +50,6 @@ glm::vec2 ggxValue(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& 
   return distribution(alpha, h) * visible * s.z * glm::vec2(1.0f - fresnel, fresnel);
 }
 
-// Returns the density of sampleGgx() per steradian of s, also of directions below the surface.
 // pdf = D_v(h) / (4 v·h), with D_v = G1(v) v·h D(h) / n·v and G1 = 2 n·v / (n·v + stretched)
 float ggxPdf(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
   const glm::vec3 sum = v + s;
@@ -54,8 +58,7 @@ float ggxPdf(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
   return distribution(alpha, sum / length) / (2.0f * (v.z + stretched(alpha, v)));
 }
 
-// Samples the distribution of visible normals (Heitz 2018) by Dupuy and Benyoub, "Sampling Visible GGX
-// Normals with Spherical Caps", 2023. Some directions are below the surface.
+// This follows Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
 glm::vec3 sampleGgx(const glm::vec2& alpha, const glm::vec3& v, const glm::vec2& u) {
   const glm::vec3 round = glm::normalize(glm::vec3(alpha * glm::vec2(v), v.z));
   const float z = (1.0f - u.y) * (1.0f + round.z) - round.z;
@@ -63,13 +66,6 @@ glm::vec3 sampleGgx(const glm::vec2& alpha, const glm::vec3& v, const glm::vec2&
   const glm::vec3 cap = glm::vec3(r * std::cos(angle), r * std::sin(angle), z) + round;
   const glm::vec3 h = glm::normalize(glm::vec3(alpha * glm::vec2(cap), std::max(cap.z, 1e-12f)));
   return glm::normalize(2.0f * glm::dot(v, h) * h - v);
-}
-
-}  // namespace
-
-glm::vec2 ggxAlpha(float roughness, float strength) {
-  const float alpha = std::max(roughness * roughness, kLeastAlpha);
-  return {glm::mix(alpha, 1.0f, strength * strength), alpha};
 }
 
 glm::vec3 liftedView(const glm::vec3& v) {
@@ -81,11 +77,7 @@ glm::vec3 liftedView(const glm::vec3& v) {
 
 glm::vec3 Reflector::specular(const glm::vec3& s) const {
   if (s.z <= 0.0f) return glm::vec3(0.0f);
-  if (measured) {
-    std::array<double, 3> f;
-    measured->value({}, glm::dvec3(view), glm::dvec3(s), f);
-    return glm::vec3(f[0], f[1], f[2]) * s.z;
-  }
+  if (measured) return measured->value(view, s) * s.z;
   const glm::vec2 parts = ggxValue(alpha, view, s);
   return f0 * parts.x + f90 * parts.y;
 }
@@ -177,6 +169,122 @@ glm::vec2 AlbedoTable::at(const glm::vec3& view, float roughness, float strength
     if (weight > 0.0f) sum += weight * values_[at];
   }
   return sum;
+}
+
+namespace {
+
+constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
+constexpr std::size_t kAngles = 65;                       // nodes of the scale
+constexpr std::uint32_t kIntegralPoints = 2048;           // sample points of each integral
+constexpr double kSharpness = 400.0;                      // of the interpolation weights: 1/(2 sigma²)
+
+// Returns half-vector and difference angles as coordinates 0..1 (Rusinkiewicz 1998).
+glm::dvec2 placeOf(const glm::dvec3& v, const glm::dvec3& s) {
+  const glm::dvec3 sum = v + s;
+  // This uses atan2, because the arc cosine of a small angle has no significant digits.
+  const double half = std::atan2(std::sqrt(sum.x * sum.x + sum.y * sum.y), sum.z);
+  const double difference = std::atan2(glm::length(v - s), glm::length(sum));
+  constexpr double kQuarter = std::numbers::pi / 2;
+  return {std::sqrt(std::clamp(half / kQuarter, 0.0, 1.0)), std::clamp(difference / kQuarter, 0.0, 1.0)};
+}
+
+glm::dvec3 directionOf(float theta, float phi) {
+  const double t = theta, p = phi;
+  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+struct Weighed {
+  glm::dvec2 place;
+  glm::dvec3 value;
+};
+
+glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
+  const auto distance2 = [&](const Weighed& one) {
+    const glm::dvec2 away = one.place - place;
+    return glm::dot(away, away);
+  };
+  // Weights are relative to the nearest measurement, or they would underflow far from all of them.
+  double nearest = distance2(all.front());
+  for (const Weighed& one : all) nearest = std::min(nearest, distance2(one));
+  double weights = 0.0;
+  glm::dvec3 sum(0.0);
+  for (const Weighed& one : all) {
+    const double beyond = kSharpness * (distance2(one) - nearest);
+    if (beyond > 40.0) continue;
+    const double weight = std::exp(-beyond);
+    weights += weight;
+    sum += weight * one.value;
+  }
+  return glm::vec3(sum / weights);
+}
+
+// Returns the node below a coordinate 0..1 among `nodes`, and the fraction of the way to the next.
+std::pair<std::size_t, float> nodeBelow(double at, std::size_t nodes) {
+  const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
+  const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
+  return {below, static_cast<float>(scaled - static_cast<double>(below))};
+}
+
+float largestChannel(const glm::vec3& v) {
+  return std::max({v.r, v.g, v.b});
+}
+
+}  // namespace
+
+MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
+  std::vector<Weighed> all;
+  for (const BrdfMeasurement& m : measured.measurements)
+    all.push_back(
+        {placeOf(directionOf(m.theta_i, m.phi_i), directionOf(m.theta_o, m.phi_o)), glm::dvec3(m.value)});
+  values_.resize(kHalves * kDifferences);
+  parallelRanges(kDifferences, 1, {}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t d = first; d < last; ++d)
+      for (std::size_t h = 0; h < kHalves; ++h)
+        values_[d * kHalves + h] = meanAt(
+            all, {static_cast<double>(h) / (kHalves - 1), static_cast<double>(d) / (kDifferences - 1)});
+  });
+  // The width of the highlight at theta_d = 30°: GGX falls to half where tan theta_h = 0.644 alpha.
+  const glm::vec3* row = &values_[kDifferences / 3 * kHalves];
+  const float base = largestChannel(row[kHalves * 4 / 5]), half = 0.5f * (largestChannel(row[0]) + base);
+  std::size_t h = 1;
+  while (h + 1 < kHalves && largestChannel(row[h]) > half) ++h;
+  const float root = static_cast<float>(h) / (kHalves - 1);
+  alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
+  // Computes the reflection of uniform light.
+  scales_.resize(kAngles);
+  parallelRanges(kAngles, 1, {}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t a = first; a < last; ++a) {
+      const float root_of_cosine = static_cast<float>(a) / (kAngles - 1);
+      const float cosine = std::max(root_of_cosine * root_of_cosine, kLeastCosine);
+      Reflector reflector{.view = {std::sqrt(std::max(1.0f - cosine * cosine, 0.0f)), 0.0f, cosine},
+                          .alpha = glm::vec2(alpha_),
+                          .specular_share = 0.5f};
+      const Sampler sampler(/*seed=*/1, static_cast<std::uint32_t>(a), 0);
+      glm::dvec3 sum(0.0);
+      for (std::uint32_t i = 0; i < kIntegralPoints; ++i) {
+        const glm::vec3 s = reflector.sample(i % 2 == 0 ? 0.0f : 1.0f, sampler.pair(i % 2, i / 2));
+        if (s.z > 0.0f) sum += glm::dvec3(unscaled(reflector.view, s) * (s.z / reflector.pdf(s)));
+      }
+      scales_[a] = std::min(1.0f, static_cast<float>(kIntegralPoints) / largestChannel(glm::vec3(sum)));
+    }
+  });
+}
+
+glm::vec3 MeasuredReflection::unscaled(const glm::vec3& v, const glm::vec3& s) const {
+  const glm::dvec2 place = placeOf(glm::dvec3(v), glm::dvec3(s));
+  const auto [h, right] = nodeBelow(place.x, kHalves);
+  const auto [d, down] = nodeBelow(place.y, kDifferences);
+  const glm::vec3* at = &values_[d * kHalves + h];
+  return glm::mix(glm::mix(at[0], at[1], right), glm::mix(at[kHalves], at[kHalves + 1], right), down);
+}
+
+float MeasuredReflection::scale(float cosine) const {
+  const auto [a, share] = nodeBelow(std::sqrt(std::max(cosine, 0.0f)), kAngles);
+  return glm::mix(scales_[a], scales_[a + 1], share);
+}
+
+glm::vec3 MeasuredReflection::value(const glm::vec3& v, const glm::vec3& s) const {
+  return unscaled(v, s) * std::min(scale(v.z), scale(s.z));
 }
 
 }  // namespace lambent::baker::reference

@@ -1,8 +1,7 @@
 // Evaluates and samples the reflection of a surface point towards one view direction (docs/conventions.md,
 // "Materials"): GGX with Fresnel over a diffuse part, isotropic or anisotropic, or a measured BRDF.
 // Directions are in local space: z is the shading normal, x the tangent; v and s point away from the surface.
-// With baker/brdf it shares only what a measured BRDF is between its measurements, so that it can reveal
-// mistakes there.
+// It shares only the loader of measured files with baker/brdf, so that it can reveal mistakes there.
 #pragma once
 
 #include <vector>
@@ -12,11 +11,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace lambent::baker {
-class Brdf;
-}
+#include "baker/import/scene.hpp"
 
 namespace lambent::baker::reference {
+
+class MeasuredReflection;
 
 inline constexpr float kLeastAlpha = 0.001f;
 // The cosine of a view direction is raised to this minimum.
@@ -24,6 +23,14 @@ inline constexpr float kLeastCosine = 0.001f;
 
 // Returns alpha along the tangent and across it.
 glm::vec2 ggxAlpha(float roughness, float strength);
+
+// Returns the BRDF times the cosine of s, without the Fresnel factors: F0 multiplies x, F90 multiplies y.
+// Returns 0 if s.z <= 0.
+glm::vec2 ggxValue(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s);
+// Sample the distribution of visible normals (Heitz 2018) and return its density per steradian of s. Some
+// sampled directions are below the surface, and ggxPdf includes them.
+float ggxPdf(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s);
+glm::vec3 sampleGgx(const glm::vec2& alpha, const glm::vec3& v, const glm::vec2& u);
 
 // Raises the cosine of a view direction to kLeastCosine and keeps its azimuth.
 glm::vec3 liftedView(const glm::vec3& v);
@@ -35,8 +42,8 @@ struct Reflector {
   glm::vec3 f0{0.0f};
   float f90 = 0.0f;
   glm::vec2 alpha{1.0f};
-  const Brdf* measured = nullptr;  // if set, replaces everything but the frame and the view
-  float specular_share = 1.0f;     // probability with which sample() draws from the specular part
+  const MeasuredReflection* measured = nullptr;  // if set, replaces everything but the frame and the view
+  float specular_share = 1.0f;  // probability with which sample() draws from the specular part
 
   // Returns the BRDF times the cosine, or 0 if s is below the surface.
   glm::vec3 value(const glm::vec3& s) const;
@@ -66,6 +73,27 @@ class AlbedoTable {
  private:
   std::size_t angles_ = 0, azimuths_ = 1, roughnesses_ = 0, strengths_ = 1;
   std::vector<glm::vec2> values_;  // [strength][roughness][azimuth][angle]
+};
+
+// Interpolates a measured BRDF for the reference (docs/conventions.md, "Materials") by a weighted mean over
+// the half-vector and difference angles, tabulated once. It is scaled down where it would reflect more energy
+// than it receives.
+class MeasuredReflection {
+ public:
+  explicit MeasuredReflection(const MeasuredBrdf& measured);
+
+  // Returns the BRDF; v and s are in local space, above the surface.
+  glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const;
+  // Returns the alpha of a GGX lobe that is about as wide as the highlight, for sampling.
+  float alpha() const { return alpha_; }
+
+ private:
+  glm::vec3 unscaled(const glm::vec3& v, const glm::vec3& s) const;
+  float scale(float cosine) const;
+
+  std::vector<glm::vec3> values_;  // [theta_d][sqrt of theta_h]
+  std::vector<float> scales_;      // by the square root of the cosine
+  float alpha_ = 0.2f;
 };
 
 // Decides which light a glossy surface gets from directions below its own plane (docs/conventions.md,

@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "baker/brdf/brdf.hpp"
 #include "reference/sampler.hpp"
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/material_fields.hpp"
@@ -74,7 +73,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   auto textures = Textures::load(scene);
   if (!textures) return failAgain(std::move(textures.error()));
   out.textures_ = std::move(*textures);
-  std::vector<std::shared_ptr<const Brdf>> measured(scene.brdfs.size());
+  std::vector<std::shared_ptr<const MeasuredReflection>> measured(scene.brdfs.size());
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
@@ -90,11 +89,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
         if (const std::int32_t brdf = surface.material.brdf; brdf >= 0 && !surface.material.isDiffuse()) {
           const auto index = static_cast<std::size_t>(brdf);
-          if (!measured[index]) {
-            auto made = makeMeasured(scene.brdfs[index]);
-            if (!made) return failAgain(std::move(made.error()));
-            measured[index] = std::move(*made);
-          }
+          if (!measured[index]) measured[index] = std::make_shared<MeasuredReflection>(scene.brdfs[index]);
           surface.measured = measured[index];
         }
       } else {
@@ -254,7 +249,7 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   out.world_from_local = {t, glm::cross(point.shading, t), point.shading};
   out.view = liftedView(out.toLocal(glm::normalize(to_eye)));
   if ((out.measured = surfaces_[hit.surface].measured.get())) {
-    out.alpha = glm::vec2(static_cast<float>(out.measured->focus({}).alpha_t));
+    out.alpha = glm::vec2(out.measured->alpha());
     out.specular_share = 0.5f;
     return out;
   }

@@ -48,7 +48,7 @@ inline float largest(const glm::vec3& v) {
 
 struct Surface {
   gltf::Material material;
-  std::shared_ptr<const Brdf> measured;  // null: GGX or diffuse
+  std::shared_ptr<const MeasuredReflection> measured;  // null: GGX or diffuse
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(n, t) * w * handedness
