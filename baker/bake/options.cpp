@@ -227,17 +227,15 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
     if (!option.read(options, find(option.setting))) return std::nullopt;
   }
   if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
-  const auto reproduces = [&](const BakeOptions& tried) {
-    return std::ranges::all_of(tried.settings(), [&](const auto& entry) {
-      const auto found = settings.find(entry.first);
-      return found != settings.end() && found->second == entry.second;
-    });
-  };
+  // What these options must reproduce, among them what follows from the quality.
+  auto wanted = options.settings();
+  for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
+  const auto reproduces = [&](const BakeOptions& tried) { return tried.settings() == wanted; };
   // An option that can be left out without changing the settings was not asked for.
   const auto leaveOut = [&](auto member) {
     BakeOptions fewer = options;
     fewer.*member = BakeOptions().*member;
-    if (reproduces(fewer)) options = fewer;
+    if (reproduces(fewer) || !reproduces(options)) options = fewer;
   };
   leaveOut(&BakeOptions::rays), leaveOut(&BakeOptions::error_bound);
   leaveOut(&BakeOptions::refine_bound), leaveOut(&BakeOptions::fit);
