@@ -224,22 +224,27 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
   options.quality = static_cast<Quality>(row_of - kQualities.begin());
   for (const OptionRow& option : optionRows()) {
     if (option.setting.empty() || option.setting == "fit") continue;  // "fit" is told with the quality
-    if (!option.read(options, find(option.setting))) return std::nullopt;
+    if (!settings.contains(std::string(option.setting)) || !option.read(options, find(option.setting)))
+      return std::nullopt;
   }
   if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
   // What these options must reproduce, among them what follows from the quality.
   auto wanted = options.settings();
   for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
-  const auto reproduces = [&](const BakeOptions& tried) { return tried.settings() == wanted; };
+  const auto wrong = [&](const BakeOptions& tried) {
+    int count = 0;
+    for (const auto& [name, word] : tried.settings()) count += wanted[name] != word;
+    return count;
+  };
   // An option that can be left out without changing the settings was not asked for.
   const auto leaveOut = [&](auto member) {
     BakeOptions fewer = options;
     fewer.*member = BakeOptions().*member;
-    if (reproduces(fewer) || !reproduces(options)) options = fewer;
+    if (wrong(fewer) <= wrong(options)) options = fewer;
   };
   leaveOut(&BakeOptions::rays), leaveOut(&BakeOptions::error_bound);
   leaveOut(&BakeOptions::refine_bound), leaveOut(&BakeOptions::fit);
-  if (!reproduces(options)) return std::nullopt;
+  if (wrong(options) > 0) return std::nullopt;
   return options;
 }
 
