@@ -355,7 +355,7 @@ class FaceFiller {
     std::vector<Line> cuts;
     for (std::uint32_t t = 0; t < geometry_.triangles.size(); ++t) {
       if (own[t] || group_.draws[draw_of_[t]].back) continue;
-      std::array<glm::dvec3, 3> corners;
+      glm::dmat3 corners;  // by columns
       glm::dvec3 height;
       for (int k = 0; k < 3; ++k) {
         corners[k] = at(geometry_.triangles[t][k]);

@@ -50,7 +50,8 @@ TEST(Triangulation, HasNoPointInACircleAndNoEdgeAcrossOneThatItMustHave) {
          {glm::ivec2(-1, -1), glm::ivec2(1, -1), glm::ivec2(1, 1), glm::ivec2(-1, 1)})
       points.push_back(triangulation.add(corner * (reach + 1)));
     for (int i = 0; i < 40; ++i) points.push_back(triangulation.add({place(random), place(random)}));
-    for (int i = 0; i < 4; ++i) ASSERT_TRUE(triangulation.constrain(points[i], points[(i + 1) % 4], true));
+    for (std::size_t i = 0; i < 4; ++i)
+      ASSERT_TRUE(triangulation.constrain(points[i], points[(i + 1) % 4], true));
     const auto delaunay = triangulation.inside();
     double area = 0.0;
     const auto at = [&](std::uint32_t p) { return glm::dvec2(triangulation.at(p)); };
