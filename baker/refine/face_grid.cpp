@@ -230,6 +230,8 @@ class FaceGrid {
 
 std::optional<FaceMesh> fillOutline(const Outline& outline, std::span<const Line> cuts,
                                     const GridRules* rules) {
+  const auto finite = [](const glm::dvec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+  if (outline.edges.size() < 3 || !std::ranges::all_of(outline.points, finite)) return std::nullopt;
   FaceGrid grid(outline);
   if (rules) grid.addGrid(cuts, *rules);
   return grid.triangulate();

@@ -46,7 +46,7 @@ struct FaceMesh {
   std::vector<glm::uvec3> triangles;  // counter-clockwise
 };
 
-// Returns nothing if the outline crosses itself. Without rules no points are added.
+// Returns nothing if the outline crosses itself or has no edges. Without rules no points are added.
 std::optional<FaceMesh> fillOutline(const Outline& outline, std::span<const Line> cuts,
                                     const GridRules* rules);
 

@@ -377,7 +377,7 @@ class FaceFiller {
   }
 
   // Returns the triangles that take the place of a face's, and their vertices. Nothing if its rim crosses
-  // itself.
+  // itself, or more than two of its triangles share an edge.
   std::vector<glm::uvec3> triangulated(const FlatFace& face, std::vector<FaceVertex>& vertices) const {
     const std::uint32_t first = geometry_.draws[draw_of_[face.triangles.front()]].first_vertex;
     Outline outline;
@@ -430,7 +430,7 @@ class FaceFiller {
   bool fill(const FlatFace& face) {
     std::vector<FaceVertex> vertices;
     const std::vector<glm::uvec3> triangles = triangulated(face, vertices);
-    if (triangles.empty() && face.filled) return false;
+    if (triangles.empty()) return false;
     const std::uint32_t draw = draw_of_[face.triangles.front()];
     bundle::MeshData& mesh = meshOf(draw);
     for (FaceVertex& vertex : vertices)

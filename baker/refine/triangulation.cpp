@@ -211,8 +211,12 @@ bool Triangulation::constrain(std::uint32_t from, std::uint32_t to, bool outline
       std::vector<Side> sides;
       for (const auto& [p, q] : turned) sides.push_back(between(p, q));
       makeDelaunay(std::move(sides));
-    } else if (const Side side = between(a, b); triangles_[side.triangle].edges[side.k] != Edge::Outline) {
-      link(side, triangles_[side.triangle].across[side.k], kind);
+    } else {
+      const Side side = between(a, b);
+      const Triangle& triangle = triangles_[side.triangle];
+      // Two edges of an outline in one place have the same on both sides.
+      const bool is_outline = triangle.edges[side.k] == Edge::Outline;
+      link(side, triangle.across[side.k], is_outline == outline ? Edge::Kept : Edge::Outline);
     }
     a = b;
   }
@@ -228,6 +232,8 @@ std::vector<glm::uvec3> Triangulation::inside() const {
     const std::uint32_t t = next.back();
     next.pop_back();
     const Triangle& triangle = triangles_[t];
+    const bool at_corner = std::ranges::any_of(triangle.points, [](std::uint32_t p) { return p < kCorners; });
+    if (depth[t] == 1 && at_corner) return {};  // an outline is open
     if (depth[t] == 1)
       found.emplace_back(triangle.points[0] - kCorners, triangle.points[1] - kCorners,
                          triangle.points[2] - kCorners);

@@ -28,7 +28,7 @@ class Triangulation {
   bool constrain(std::uint32_t from, std::uint32_t to, bool outline);
   const glm::ivec2& at(std::uint32_t point) const { return points_[point + kCorners]; }
   // Returns the triangles that an odd number of edges of outlines divides from what is far away,
-  // counter-clockwise.
+  // counter-clockwise; none if an outline is open.
   std::vector<glm::uvec3> inside() const;
 
  private:

@@ -92,6 +92,16 @@ TEST(FaceGrid, CoversItsOutlineAndNothingElse) {
   }
 }
 
+// Tools leave edges that end on the middle of others.
+TEST(FaceGrid, CoversFacesThatMeetAlongPartsOfAnEdge) {
+  const auto mesh =
+      fillOutline({.points = {{0, 0}, {2, 0}, {2, 1}, {0, 1}, {2, 2}, {0, 2}, {1, 1}},
+                   .edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {2, 4}, {4, 5}, {5, 3}, {3, 6}, {6, 2}}},
+                  {}, nullptr);
+  ASSERT_TRUE(mesh);
+  EXPECT_NEAR(areaOf(*mesh), 4.0, 1e-6);
+}
+
 TEST(FaceGrid, HasNoTriangleOnBothSidesOfACut) {
   const double at = 0.7137;
   const Line cut{{-1.0, at}, {5.0, at}};
@@ -106,9 +116,14 @@ TEST(FaceGrid, HasNoTriangleOnBothSidesOfACut) {
   EXPECT_LT(across, 1e-2) << "of 12 m^2, where the cut ends at edges of the rim, which are long here";
 }
 
-TEST(FaceGrid, IsNoneOfAnOutlineThatCrossesItself) {
+TEST(FaceGrid, IsNoneOfAnOutlineThatCrossesItselfOrIsOpen) {
   EXPECT_FALSE(fillOutline(
       {.points = {{0, 0}, {1, 1}, {1, 0}, {0, 1}}, .edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}}}, {}, nullptr));
+  const GridRules grid = rules();
+  EXPECT_FALSE(fillOutline({}, {}, &grid));
+  const auto open =
+      fillOutline({.points = {{0, 0}, {1, 0}, {1, 1}}, .edges = {{0, 1}, {1, 2}, {1, 2}, {1, 2}}}, {}, &grid);
+  EXPECT_TRUE(open && open->triangles.empty());
 }
 
 }  // namespace
