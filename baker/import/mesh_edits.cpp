@@ -36,6 +36,53 @@ void gatherVertices(bundle::MeshData& mesh, std::span<const std::uint32_t> sourc
   gather(mesh.tangents);
 }
 
+void dropUnusedVertices(bundle::MeshData& mesh) {
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const std::uint32_t v : mesh.indices) used[v] = true;
+  std::vector<std::uint32_t> sources, number(mesh.positions.size(), 0);
+  for (std::uint32_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    number[v] = static_cast<std::uint32_t>(sources.size());
+    sources.push_back(v);
+  }
+  if (sources.size() == used.size()) return;
+  gatherVertices(mesh, sources);
+  for (std::uint32_t& v : mesh.indices) v = number[v];
+}
+
+template <std::size_t N>
+void appendMean(bundle::MeshData& mesh, const std::array<std::uint32_t, N>& of,
+                const std::array<float, N>& weights) {
+  const auto meanOf = [&](const auto& value) {
+    auto mean = value(of[0]) * weights[0] + value(of[1]) * weights[1];
+    for (std::size_t i = 2; i < N; ++i) mean += value(of[i]) * weights[i];
+    return mean;
+  };
+  const auto append = [&](auto& values) {
+    if (values.empty()) return;
+    const auto mean = meanOf([&](std::uint32_t v) { return values[v]; });
+    values.push_back(mean);
+  };
+  const std::size_t next = mesh.positions.size();
+  append(mesh.positions), append(mesh.texcoords0), append(mesh.texcoords1), append(mesh.colors);
+  if (!mesh.normals.empty()) {
+    mesh.normal_weights.resize(next, 1.0f);
+    const glm::vec3 mean = meanOf([&](std::uint32_t v) { return mesh.normal_weights[v] * mesh.normals[v]; });
+    const float length = glm::length(mean);
+    const bool any = length > 1e-6f;  // opposite normals have no mean
+    mesh.normals.push_back(any ? mean / length : mesh.normals[of[0]]);
+    mesh.normal_weights.push_back(any ? length : mesh.normal_weights[of[0]]);
+  }
+  if (!mesh.tangents.empty()) {
+    const glm::vec4 first = mesh.tangents[of[0]];
+    const glm::vec3 mean = meanOf([&](std::uint32_t v) { return glm::vec3(mesh.tangents[v]); });
+    const float length = glm::length(mean);
+    mesh.tangents.emplace_back(length > 1e-6f ? mean / length : glm::vec3(first), first.w);
+  }
+}
+template void appendMean(bundle::MeshData&, const std::array<std::uint32_t, 2>&, const std::array<float, 2>&);
+template void appendMean(bundle::MeshData&, const std::array<std::uint32_t, 3>&, const std::array<float, 3>&);
+
 namespace {
 
 using bundle::MeshData;
@@ -87,20 +134,6 @@ std::size_t dropDegenerate(MeshData& mesh) {
     // Twice the area is the height over the longest edge times its length.
     return glm::length(areaVector(mesh, i)) > longest * std::max(kThinnest * longest, kRounding * largest);
   });
-}
-
-void dropUnusedVertices(MeshData& mesh) {
-  std::vector<bool> used(mesh.positions.size(), false);
-  for (const std::uint32_t v : mesh.indices) used[v] = true;
-  std::vector<std::uint32_t> sources, number(mesh.positions.size(), 0);
-  for (std::uint32_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) continue;
-    number[v] = static_cast<std::uint32_t>(sources.size());
-    sources.push_back(v);
-  }
-  if (sources.size() == used.size()) return;
-  gatherVertices(mesh, sources);
-  for (std::uint32_t& v : mesh.indices) v = number[v];
 }
 
 // Makes flat normals, as glTF asks if there are none. Each corner becomes a vertex of its own.

@@ -1,6 +1,8 @@
 // Copies all attributes of a mesh at once, so that code which drops, doubles or sorts vertices forgets none.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,6 +15,20 @@ namespace lambent::baker {
 // Reorders the vertices of `mesh` as `sources`, which may repeat some and leave others out. Indices stay
 // unchanged.
 void gatherVertices(bundle::MeshData& mesh, std::span<const std::uint32_t> sources);
+
+// Removes vertices that no triangle has.
+void dropUnusedVertices(bundle::MeshData& mesh);
+
+// Appends a vertex whose attributes are the weighted means of those of others; the weights sum to 1. Normals
+// keep the length of their mean (MeshData::normal_weights), so that interpolation over parts of a triangle
+// equals that over the whole.
+template <std::size_t N>
+void appendMean(bundle::MeshData& mesh, const std::array<std::uint32_t, N>& of,
+                const std::array<float, N>& weights);
+extern template void appendMean(bundle::MeshData&, const std::array<std::uint32_t, 2>&,
+                                const std::array<float, 2>&);
+extern template void appendMean(bundle::MeshData&, const std::array<std::uint32_t, 3>&,
+                                const std::array<float, 3>&);
 
 // Makes the tangents of meshes whose files have none, by the rules of MikkTSpace (Mikkelsen 2008), which glTF
 // 2.0 asks for and with which most programs bake normal maps.

@@ -24,17 +24,6 @@ double squaredLength(const glm::vec3& a, const glm::vec3& b) {
 struct EdgePoint {
   std::uint32_t a, b;
   float share;  // of the way from a to b
-
-  template <typename Vector>
-  Vector of(const Vector& at_a, const Vector& at_b) const {
-    return at_a * (1.0f - share) + at_b * share;
-  }
-  template <typename Vector>
-  void push(std::vector<Vector>& values) const {
-    if (values.empty()) return;
-    const Vector between = of(values[a], values[b]);
-    values.push_back(between);
-  }
 };
 
 // shareOf(a, b) is 0 if the edge between two vertices is not to be split, else where (EdgePoint::share).
@@ -130,27 +119,7 @@ class Splitter {
     const auto [entry, added] = points_.try_emplace((std::uint64_t{low} << 32) | high, next);
     if (!added) return entry->second;
     const EdgePoint at = pointOn(low, high);
-    at.push(mesh_.positions);
-    at.push(mesh_.texcoords0);
-    at.push(mesh_.texcoords1);
-    at.push(mesh_.colors);
-    if (!mesh_.normals.empty()) {
-      // The mean is weighted, so that interpolation over the parts equals that over the whole
-      // (MeshData::normal_weights).
-      mesh_.normal_weights.resize(next, 1.0f);
-      const glm::vec3 mean = at.of(mesh_.normal_weights[low] * mesh_.normals[low],
-                                   mesh_.normal_weights[high] * mesh_.normals[high]);
-      const float length = glm::length(mean);
-      const bool any = length > 1e-6f;  // opposite normals have no mean
-      mesh_.normals.push_back(any ? mean / length : mesh_.normals[low]);
-      mesh_.normal_weights.push_back(any ? length : mesh_.normal_weights[low]);
-    }
-    if (!mesh_.tangents.empty()) {
-      const glm::vec4 first = mesh_.tangents[low];
-      const glm::vec3 mean = at.of(glm::vec3(first), glm::vec3(mesh_.tangents[high]));
-      const float length = glm::length(mean);
-      mesh_.tangents.emplace_back(length > 1e-6f ? mean / length : glm::vec3(first), first.w);
-    }
+    appendMean<2>(mesh_, {at.a, at.b}, {1.0f - at.share, at.share});
     return next;
   }
 

@@ -27,9 +27,8 @@ namespace {
 // Vertices are so far apart inside a face, and along its rim and cuts, in extents of what eyes see. Beyond
 // that extent both grow with the distance.
 constexpr float kInside = 1.0f / 24.0f, kAlong = 1.0f / 96.0f;
-// Vertices on both sides of a cut are so far from it, in extents, as those before cut edges are
-// (cutShares()). Surfaces cut a face that come this much nearer to it.
-constexpr float kBeside = 1.0f / 32768.0f, kContact = 1.0f / 4096.0f;
+// Surfaces cut a face that come so near to it, in extents.
+constexpr float kContact = 1.0f / 4096.0f;
 // Faces are filled that are larger than so many squares of the grid and take up so much of all pictures.
 constexpr double kLeastSquares = 1.5, kLeastOfPictures = 1.5e-3;
 constexpr double kLeastSeed = 1e-4;  // squares of the grid in the largest triangle of a face
@@ -38,7 +37,7 @@ constexpr double kEven = 2e-3;       // of attributes that change evenly across 
 constexpr std::uint32_t kNew = 0xffffffffu;
 constexpr std::size_t kMostOnEdge = 1024;  // parts of an edge of a rim
 
-using Edge = std::uint64_t;  // two places, the lower one first
+using Edge = std::uint64_t;  // pairOf() places
 using TrianglesAtEdges = std::unordered_map<Edge, std::vector<std::uint32_t>>;
 
 // Triangles of one draw in one plane that hang together, and across which what vertices hold changes evenly.
@@ -46,9 +45,10 @@ struct FlatFace {
   std::vector<std::uint32_t> triangles;  // into GroupGeometry::triangles
   glm::uvec3 basis{0};                   // three vertices far from each other, of which others are means
   glm::dvec3 origin{0.0}, x{0.0}, y{0.0}, normal{0.0};
-  double area = 0.0;    // m^2
-  double excess = 0.0;  // sum of SeenTriangle::excess
-  bool filled = false;  // with a grid; else only the points on its edges are added
+  double area = 0.0;       // m^2
+  double excess = 0.0;     // sum of SeenTriangle::excess
+  bool filled = false;     // with a grid; else only the points on its edges are added
+  std::vector<Line> cuts = {};  // where other surfaces meet a filled one
 
   glm::dvec2 flat(const glm::dvec3& p) const { return {glm::dot(p - origin, x), glm::dot(p - origin, y)}; }
   glm::dvec3 inSpace(const glm::dvec2& p) const { return origin + p.x * x + p.y * y; }
@@ -57,39 +57,16 @@ struct FlatFace {
 // A vertex of a filled face: one that is there, or a mean of three.
 struct FaceVertex {
   glm::uvec3 of{0};
-  glm::dvec3 weights{0.0};
+  glm::vec3 weights{0.0f};
   std::uint32_t old = kNew;
 };
 
-template <typename V>
-glm::vec<V::length(), double> meanOf(const std::vector<V>& values, const glm::uvec3& of,
-                                     const glm::dvec3& weights) {
-  using Wide = glm::vec<V::length(), double>;
-  return weights.x * Wide(values[of.x]) + weights.y * Wide(values[of.y]) + weights.z * Wide(values[of.z]);
-}
+using MeshTriangle = std::array<std::uint32_t, 3>;
 
-// Appends the mean of three vertices.
-void appendMean(bundle::MeshData& mesh, const glm::uvec3& of, const glm::dvec3& weights) {
-  const auto append = [&](auto& values) {
-    if (!values.empty()) values.emplace_back(meanOf(values, of, weights));
-  };
-  append(mesh.positions), append(mesh.texcoords0), append(mesh.texcoords1), append(mesh.colors);
-  if (!mesh.tangents.empty()) {
-    const glm::vec3 along(meanOf(mesh.tangents, of, weights));
-    const float length = glm::length(along);
-    mesh.tangents.emplace_back(length > 0.0f ? along / length : along, mesh.tangents[of.x].w);
-  }
-  glm::dvec3 normal(0.0);
-  for (int k = 0; k < 3; ++k)
-    normal += weights[k] * (mesh.normal_weights.empty() ? 1.0 : double{mesh.normal_weights[of[k]]}) *
-              glm::dvec3(mesh.normals[of[k]]);
-  const double length = glm::length(normal);
-  if (mesh.normal_weights.empty() && length < 1.0 - 1e-6)
-    mesh.normal_weights.assign(mesh.normals.size(), 1.0f);
-  if (!mesh.normal_weights.empty())
-    mesh.normal_weights.push_back(static_cast<float>(std::clamp(length, 1e-6, 1.0)));
-  mesh.normals.push_back(length > 0.0 ? glm::vec3(normal / length) : mesh.normals[of.x]);
-}
+struct Change {  // of a mesh
+  std::set<MeshTriangle> gone;
+  std::vector<std::uint32_t> added;  // indices
+};
 
 class FaceFiller {
  public:
@@ -103,21 +80,15 @@ class FaceFiller {
         room_(room),
         meshes_(meshes),
         draw_of_(geometry.triangles.size()),
-        removed_(geometry.triangles.size(), false) {
+        place_(placesIn(geometry)) {
     const double extent = importance.extent();
-    inside_ = double{kInside} * extent, along_ = double{kAlong} * extent, beside_ = double{kBeside} * extent,
-    contact_ = double{kContact} * extent;
+    inside_ = double{kInside} * extent, along_ = double{kAlong} * extent,
+    beside_ = double{kBeforeCut} * extent, contact_ = double{kContact} * extent;
     for (std::uint32_t d = 0; d < geometry.draws.size(); ++d) {
       const PlannedDraw& draw = group.draws[d];
       const DrawGeometry& shape = geometry.draws[d];
       free_.push_back(!draw.back && copies[draw.mesh][draw.primitive] == 1 && shape.texels == 0);
       std::fill_n(draw_of_.begin() + shape.first_triangle, shape.triangle_count, d);
-    }
-    // Vertices in one place have the same number.
-    std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
-    for (const glm::vec3& p : geometry.positions) {
-      const auto next = static_cast<std::uint32_t>(known.size());
-      place_.push_back(known.try_emplace(vertexKey(p, glm::vec3(0.0f), {}), next).first->second);
     }
   }
 
@@ -134,10 +105,7 @@ class FaceFiller {
 
  private:
   glm::dvec3 at(std::uint32_t vertex) const { return glm::dvec3(geometry_.positions[vertex]); }
-  Edge edgeOf(std::uint32_t a, std::uint32_t b) const {
-    const auto [low, high] = std::minmax(place_[a], place_[b]);
-    return Edge{low} << 32 | high;
-  }
+  Edge edgeOf(std::uint32_t a, std::uint32_t b) const { return pairOf(place_[a], place_[b]); }
   template <typename Visit>  // visit(a, b) gets the vertices at the ends of each edge
   void forEdges(std::uint32_t t, const Visit& visit) const {
     const glm::uvec3& corners = geometry_.triangles[t];
@@ -145,11 +113,6 @@ class FaceFiller {
   }
   bundle::MeshData& meshOf(std::uint32_t draw) const {
     return meshes_[group_.draws[draw].mesh][group_.draws[draw].primitive];
-  }
-  // Returns a triangle of a draw as its mesh has it, or the other way round.
-  glm::uvec3 inMesh(std::uint32_t draw, const glm::uvec3& t) const {
-    const bool mirrored = glm::determinant(glm::mat3(group_.draws[draw].group_from_mesh)) < 0.0f;
-    return mirrored ? glm::uvec3(t.x, t.z, t.y) : t;
   }
   // Returns by how much vertices are farther apart at a point beyond what eyes see.
   double scaleAt(const glm::dvec3& p) const {
@@ -197,9 +160,10 @@ class FaceFiller {
         return false;
       const auto even = [&]<typename V>(const std::vector<V>& values) {
         if (values.empty()) return true;
-        const auto mean = meanOf(values, of, weights);
-        return glm::distance(mean, glm::vec<V::length(), double>(values[v])) <=
-               kEven * std::max(1.0, glm::length(mean));
+        using Wide = glm::vec<V::length(), double>;
+        const Wide mean =
+            weights.x * Wide(values[of.x]) + weights.y * Wide(values[of.y]) + weights.z * Wide(values[of.z]);
+        return glm::distance(mean, Wide(values[v])) <= kEven * std::max(1.0, glm::length(mean));
       };
       if (!even(mesh.texcoords0) || !even(mesh.texcoords1) || !even(mesh.colors)) return false;
     }
@@ -222,7 +186,7 @@ class FaceFiller {
     for (const auto& [less_area, seed] : seeds) {
       if (taken[seed]) continue;
       FlatFace face = grown(seed, /*evenly=*/false, at_edge, taken);
-      // Where pictures on a wall do not continue each other, the face is that of one picture.
+      // Pictures on a wall may not continue each other. The face then is that of one picture.
       if (!std::ranges::all_of(face.triangles, [&](std::uint32_t t) { return isEven(face, t); }))
         face = grown(seed, /*evenly=*/true, at_edge, taken);
       face.area = 0.0;
@@ -311,6 +275,7 @@ class FaceFiller {
           divided.push_back(edgeOf(a, b));
       }
       face.filled = true;
+      face.cuts = cutsOf(face);
       std::vector<FaceVertex> vertices;
       const std::vector<glm::uvec3> triangles = triangulated(face, vertices);
       const auto added = static_cast<std::size_t>(std::ranges::count(vertices, kNew, &FaceVertex::old));
@@ -413,8 +378,7 @@ class FaceFiller {
                           .beside = beside_,
                           .scale = [&](const glm::dvec2& p) { return scaleAt(face.inSpace(p)); },
                           .seen = [&](const glm::dvec2& p) { return seenAt(face, p); }};
-    const auto mesh = fillOutline(outline, face.filled ? cutsOf(face) : std::vector<Line>(),
-                                  face.filled ? &rules : nullptr);
+    const auto mesh = fillOutline(outline, face.cuts, face.filled ? &rules : nullptr);
     if (!mesh) return {};
     double area = 0.0;
     for (const glm::uvec3& t : mesh->triangles)
@@ -436,42 +400,33 @@ class FaceFiller {
     for (FaceVertex& vertex : vertices)
       if (vertex.old == kNew) {
         vertex.old = static_cast<std::uint32_t>(mesh.positions.size());
-        appendMean(mesh, vertex.of, vertex.weights);
+        appendMean<3>(mesh, {vertex.of.x, vertex.of.y, vertex.of.z},
+                      {vertex.weights.x, vertex.weights.y, vertex.weights.z});
       }
-    for (const glm::uvec3& t : triangles) {
-      const glm::uvec3 corners = inMesh(draw, t);
-      for (int k = 0; k < 3; ++k) added_[draw].push_back(vertices[corners[k]].old);
-    }
-    for (const std::uint32_t t : face.triangles) removed_[t] = true;
+    const auto inMesh = [mirrored = glm::determinant(glm::mat3(group_.draws[draw].group_from_mesh)) <
+                                    0.0f](const glm::uvec3& t) {
+      return mirrored ? MeshTriangle{t.x, t.z, t.y} : MeshTriangle{t.x, t.y, t.z};
+    };
+    Change& change = changes_[draw];
+    for (const glm::uvec3& t : triangles)
+      for (const std::uint32_t v : inMesh(t)) change.added.push_back(vertices[v].old);
+    for (const std::uint32_t t : face.triangles)
+      change.gone.insert(inMesh(geometry_.triangles[t] - geometry_.draws[draw].first_vertex));
     return true;
   }
 
-  // Writes the triangles that stay and those that were added, and drops vertices that none uses.
+  // Writes the triangles that stay and those that were added.
   void writeMeshes() {
-    for (const auto& [d, added] : added_) {
-      bundle::MeshData& mesh = meshOf(d);
-      const DrawGeometry& draw = geometry_.draws[d];
-      std::set<std::array<std::uint32_t, 3>> gone;
-      for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t)
-        if (removed_[t]) {
-          const glm::uvec3 corners = inMesh(d, geometry_.triangles[t] - draw.first_vertex);
-          gone.insert({corners.x, corners.y, corners.z});
-        }
-      std::vector<std::uint32_t> indices, sources, number(mesh.positions.size(), kNew);
+    for (const auto& [draw, change] : changes_) {
+      bundle::MeshData& mesh = meshOf(draw);
+      std::vector<std::uint32_t> indices;
       for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const std::array corners = {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
-        if (!gone.contains(corners)) indices.insert(indices.end(), corners.begin(), corners.end());
+        const MeshTriangle corners = {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
+        if (!change.gone.contains(corners)) indices.insert(indices.end(), corners.begin(), corners.end());
       }
-      indices.insert(indices.end(), added.begin(), added.end());
-      for (std::uint32_t& v : indices) {
-        if (number[v] == kNew) {
-          number[v] = static_cast<std::uint32_t>(sources.size());
-          sources.push_back(v);
-        }
-        v = number[v];
-      }
-      gatherVertices(mesh, sources);
+      indices.insert(indices.end(), change.added.begin(), change.added.end());
       mesh.indices = std::move(indices);
+      dropUnusedVertices(mesh);
     }
   }
 
@@ -485,9 +440,8 @@ class FaceFiller {
   std::vector<bool> free_;                                            // by draw: its mesh may change
   std::vector<std::uint32_t> draw_of_, place_;                        // by triangle, by vertex
   std::vector<FlatFace> faces_;
-  std::unordered_map<Edge, std::size_t> parts_;                // into which edges are divided
-  std::vector<bool> removed_;                                  // by triangle
-  std::map<std::uint32_t, std::vector<std::uint32_t>> added_;  // indices by draw
+  std::unordered_map<Edge, std::size_t> parts_;  // into which edges are divided
+  std::map<std::uint32_t, Change> changes_;      // by draw
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 // edges are to be split.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -187,9 +188,22 @@ CopiesOfMeshes copiesOf(const std::vector<RigidGroup>& groups,
 std::size_t countDrawn(const CopiesOfMeshes& copies,
                        const std::vector<std::vector<bundle::MeshData>>& meshes);
 
+// Returns a number for each vertex of a group; vertices at exactly the same position have the same one.
+std::vector<std::uint32_t> placesIn(const GroupGeometry& geometry);
+
+// Returns the same for an edge between two places or vertices from either end.
+inline std::uint64_t pairOf(std::uint32_t a, std::uint32_t b) {
+  const auto [low, high] = std::minmax(a, b);
+  return std::uint64_t{low} << 32 | high;
+}
+
 // Finds where another surface cuts an edge of a face. Such a face is lit on one side of the cut and dark on
 // the other. No vertex may mix both, and none should lie in the cut: each side gets a vertex of its own, a
 // little before it.
+
+// A vertex lies before a surface that cuts its face by this share of the extent, which is a few steps of the
+// lattice of positions.
+inline constexpr float kBeforeCut = 1.0f / 32768.0f;
 
 struct FaceEdge {
   std::uint32_t a, b, triangle;  // two vertices, and the triangle to which the edge belongs

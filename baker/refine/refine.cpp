@@ -297,9 +297,8 @@ std::size_t countDrawn(const CopiesOfMeshes& copies,
 
 namespace {
 
-// A vertex lies before a surface that cuts its face by this share of the extent, which is a few steps of the
-// lattice of positions. An edge that begins nearer than this many times as far before it is not cut again.
-constexpr float kBeforeCut = 1.0f / 32768.0f, kLeastCut = 2.0f;
+// An edge that begins nearer before a cut than this many times as far as its vertices is not cut again.
+constexpr float kLeastCut = 2.0f;
 
 // Returns a unit normal, or 0 for a triangle without area.
 glm::vec3 unitNormal(const GroupGeometry& geometry, std::uint32_t triangle) {
@@ -344,18 +343,6 @@ std::vector<float> cutShares(const GroupGeometry& scene, const RayScene& rays, f
   return shares;
 }
 
-namespace {
-
-// Shares of edges are multiples of its inverse, so that 1 - share has the same bits whichever end comes
-// first.
-constexpr float kShareSteps = 65536.0f;
-
-std::uint64_t pairOf(std::uint32_t a, std::uint32_t b) {
-  const auto [low, high] = std::minmax(a, b);
-  return std::uint64_t{low} << 32 | high;
-}
-
-// Returns a number for each vertex; vertices at exactly the same position have the same one.
 std::vector<std::uint32_t> placesIn(const GroupGeometry& geometry) {
   std::vector<std::uint32_t> order(geometry.positions.size()), places(geometry.positions.size());
   for (std::uint32_t v = 0; v < order.size(); ++v) order[v] = v;
@@ -371,6 +358,12 @@ std::vector<std::uint32_t> placesIn(const GroupGeometry& geometry) {
   }
   return places;
 }
+
+namespace {
+
+// Shares of edges are multiples of its inverse, so that 1 - share has the same bits whichever end comes
+// first.
+constexpr float kShareSteps = 65536.0f;
 
 // Calls visit(a, b) with the vertices at the ends of every edge of every triangle.
 template <typename Visit>

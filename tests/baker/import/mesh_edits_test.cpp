@@ -186,6 +186,24 @@ TEST(SplitMarkedEdges, LeavesAClosedMeshClosedWhereverEdgesAreSplit) {
   for (const auto& [edge, count] : edges(mesh)) ASSERT_EQ(count, 2);
 }
 
+TEST(SplitMarkedEdges, TakesNormalsAndTangentsAtTheSameShareAsPositionsWhicheverEndComesFirst) {
+  for (const bool turned : {false, true}) {
+    MeshData mesh;
+    mesh.positions = {{turned ? 4 : 0, 0, 0}, {turned ? 0 : 4, 0, 0}, {2, 0, 3}};
+    mesh.normals = {{0, 1, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.tangents = {{0, 0, 1, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+    mesh.indices = {0, 1, 2};
+    splitMarkedEdges(mesh, [](std::uint32_t a, std::uint32_t b) {
+      return a == 0 && b == 1 ? 0.25f : a == 1 && b == 0 ? 0.75f : 0.0f;
+    });
+    ASSERT_EQ(mesh.positions.size(), 4u);
+    EXPECT_EQ(mesh.positions[3].x, turned ? 3.0f : 1.0f);
+    EXPECT_LT(glm::distance(mesh.normals[3], glm::normalize(glm::vec3(0.25f, 0.75f, 0.0f))), 1e-6f) << turned;
+    EXPECT_LT(glm::distance(glm::vec3(mesh.tangents[3]), glm::normalize(glm::vec3(0.0f, 0.25f, 0.75f))),
+              1e-6f);
+  }
+}
+
 TEST(SplitLongEdges, InterpolatesAttributesAndKeepsNormalsUnit) {
   MeshData mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
