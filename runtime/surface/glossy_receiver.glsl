@@ -53,26 +53,16 @@ Reflected pixel_change = Reflected(vec4(0.0), vec3(0.0), vec4(0.0));  // what bo
 
 Reflected sumOf(Reflected a, Reflected b) { return Reflected(a.light + b.light, a.albedo, a.diffuse + b.diffuse); }
 
-// Evaluates the harmonics in direction d, which are the coefficients of a point of light there. The recurrences are
-// Cartesian, as in diffuse_eval.glsl.
+#include "harmonic_steps.glsl"
+
+// Evaluates the harmonics in direction d, which are the coefficients of a point of light there.
 void pointLight(vec3 d, out vec4 light[kCoefficients]) {
-  float c = 1.0, s = 0.0, sectoral = 0.28209479;
+  float c = 1.0, s = 0.0, sectoral = kConstantHarmonic;
   for (int m = 0; m < kBands; ++m) {
-    if (m > 0) {
-      float next_c = d.x * c - d.y * s;
-      s = d.x * s + d.y * c;
-      c = next_c;
-      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
-    }
+    if (m > 0) stepOrder(d, m, c, s, sectoral);
     float p = sectoral, before = 0.0;
     for (int l = m; l < kBands; ++l) {
-      if (l > m) {
-        float factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
-        float back = l == m + 1 ? 0.0 : factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
-        float next = factor * d.z * p - back * before;
-        before = p;
-        p = next;
-      }
+      if (l > m) stepBand(d.z, l, m, p, before);
       light[l * (l + 1) + m] = vec4(p * c);
       if (m > 0) light[l * (l + 1) - m] = vec4(p * s);
     }

@@ -7,30 +7,18 @@ float clampedCosineOverPi(int l) {
   return kWeights[l];
 }
 
+#include "harmonic_steps.glsl"
+
 // Returns the sum over l, m of y_lm(normal) light_lm, the radiance from there; with the clamped cosine, of A_l/pi
-// y_lm(normal) light_lm, which is E/pi of an open surface. The recurrences are Cartesian, so the poles are ordinary points
-// (docs/conventions.md: no Condon-Shortley sign).
+// y_lm(normal) light_lm, which is E/pi of an open surface.
 vec3 sumOfHarmonics(vec3 normal, uint light, int order, bool clamped_cosine) {
   vec3 sum = vec3(0.0);
-  float c = 1.0, s = 0.0;              // Re and Im of (x + iy)^m
-  float sectoral = 0.28209479177387814;  // y_mm without c or s; sqrt(2) inside for m > 0
+  float c = 1.0, s = 0.0, sectoral = kConstantHarmonic;
   for (int m = 0; m < order; ++m) {
-    if (m > 0) {
-      float next_c = normal.x * c - normal.y * s;
-      s = normal.x * s + normal.y * c;
-      c = next_c;
-      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
-    }
+    if (m > 0) stepOrder(normal, m, c, s, sectoral);
     float p = sectoral, before = 0.0;
     for (int l = m; l < order; ++l) {
-      if (l > m) {
-        float z_factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
-        float back = l == m + 1 ? 0.0
-                                : z_factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
-        float next = z_factor * normal.z * p - back * before;
-        before = p;
-        p = next;
-      }
+      if (l > m) stepBand(normal.z, l, m, p, before);
       float weight = clamped_cosine ? clampedCosineOverPi(l) : 1.0;
       if (weight == 0.0) continue;
       uint centre = light + uint(l * (l + 1));
