@@ -90,6 +90,13 @@ gltf::Material convertMaterial(const json& source) {
   return material;
 }
 
+// Returns the index of the value in the list, whose last one it becomes.
+template <typename T>
+std::int32_t appended(std::vector<T>& list, T value) {
+  list.push_back(std::move(value));
+  return static_cast<std::int32_t>(list.size()) - 1;
+}
+
 class MaterialConverter {
  public:
   MaterialConverter(const Document& document, Scene& scene)
@@ -135,10 +142,8 @@ class MaterialConverter {
       gltf::Texture texture = scene_.textures[static_cast<std::size_t>(ref.texture)];
       try {
         auto roughness = roughnessImage(scene_.images[static_cast<std::size_t>(texture.image)], factor);
-        texture.image = static_cast<std::int32_t>(scene_.images.size());
-        scene_.images.push_back(std::move(roughness));
-        known->second = static_cast<std::int32_t>(scene_.textures.size());
-        scene_.textures.push_back(texture);
+        texture.image = appended(scene_.images, std::move(roughness));
+        known->second = appended(scene_.textures, texture);
       } catch (const Error& error) {
         scene_.warnings.push_back(error.line());
       }
@@ -167,9 +172,7 @@ class MaterialConverter {
       readMember(sampler, "magFilter", out.sampler.mag_filter);
       readMember(sampler, "minFilter", out.sampler.min_filter);
     }
-    texture = static_cast<std::int32_t>(scene_.textures.size());
-    scene_.textures.push_back(out);
-    return texture;
+    return texture = appended(scene_.textures, out);
   }
 
   std::int32_t takeImage(std::size_t index) {
@@ -182,10 +185,9 @@ class MaterialConverter {
     try {
       std::string name = source.value("name", "");
       if (name.empty()) name = decodePercent(file);
-      scene_.images.push_back(storableImage(std::move(name), imageBytes(source, index)));
-      image = static_cast<std::int32_t>(scene_.images.size()) - 1;
+      image = appended(scene_.images, storableImage(std::move(name), imageBytes(source, index)));
     } catch (const Error& error) {
-        scene_.warnings.push_back(fmt::format("image {}{}: {}, so surfaces look as without it ({})", index,
+      scene_.warnings.push_back(fmt::format("image {}{}: {}, so surfaces look as without it ({})", index,
                                             file.empty() ? "" : fmt::format(" (\"{}\")", file.substr(0, 80)),
                                             error.problem, error.hint));
     }
