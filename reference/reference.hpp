@@ -53,8 +53,8 @@ struct Options {
   std::optional<std::uint32_t> bounces = {};
   float rotate_light_deg = 0.0f;
   unsigned threads = 0;  // 0: as many as the machine has
-  // What the whole program may take; 0: what the machine has. A picture cannot do with less than it needs, so
-  // what needs more is refused (checkMemory() in reference.cpp).
+  // Memory that the whole program may take; 0: all that the machine has. A picture that needs more is refused
+  // (checkMemory() in reference.cpp).
   std::uint64_t memory_bytes = 0;
 };
 

@@ -228,7 +228,7 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
       return std::nullopt;
   }
   if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
-  // What these options must reproduce, among them what follows from the quality.
+  // The options must reproduce these settings, also those that follow from the quality.
   auto wanted = options.settings();
   for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
   const auto wrong = [&](const BakeOptions& tried) {

@@ -49,7 +49,7 @@ std::string faultOfCharts(const bundle::MeshData& mesh, std::uint32_t set, std::
   for (const glm::vec2& at : coordinates)
     if (!(at.x >= -kSlack && at.y >= -kSlack && at.x <= 1.0f + kSlack && at.y <= 1.0f + kSlack))
       return fmt::format("leaves the texture at ({}, {})", at.x, at.y);
-  // Of points that are spread evenly over the unit square no two triangles may cover the same.
+  // Points are spread evenly over the unit square. No two triangles may cover the same one.
   const std::size_t points = 2 * std::size_t{texels};
   const auto side = static_cast<double>(points);
   const auto clamped = [&](double at) { return static_cast<std::size_t>(std::clamp(at, 0.0, side)); };

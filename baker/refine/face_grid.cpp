@@ -206,7 +206,7 @@ class FaceGrid {
     }
   }
 
-  // What nobody sees stays coarse.
+  // Returns whether a square stays coarse because nobody sees it.
   bool isHidden(const glm::dvec2& corner, double size, double inside) const {
     if (size <= inside || size > kLargestHidden * inside) return false;
     double seen = 0.0;

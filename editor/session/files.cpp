@@ -145,7 +145,7 @@ void Files::close(std::size_t entry) {
                   const auto found = std::ranges::find_if(scenes, is_it);
                   if (found == scenes.end()) return;
                   session.scenes.close(static_cast<std::size_t>(found - scenes.begin()));
-                  // What still waits while all scenes are there is of a scene that was closed.
+                  // Edits that still wait while all scenes are there are those of a closed scene.
                   if (allShown(session)) session.files.awaited_.clear();
                 });
 }

@@ -92,11 +92,10 @@ void declare(CLI::App& app, Options& options, Words& words) {
           "Write one picture (.png tone-mapped, .exr linear) without a display; with a run of # in its name "
           "every frame: out-###.png",
           [&](const std::string& word) { return takePicture(word, options); });
-  addWord(
-      app, "--view", "NAME",
-      "What surfaces show: final, irradiance, transfer-dc, error, clusters, normals "
-      "or wireframe; an .exr holds the numbers",
-      into(options.view, named("--view", frame::parseView)))
+  addWord(app, "--view", "NAME",
+          "What surfaces show: final, irradiance, transfer-dc, error, clusters, normals "
+          "or wireframe; an .exr holds the numbers",
+          into(options.view, named("--view", frame::parseView)))
       ->default_str("final");
   addWord(app, "--overlay", "LIST",
           "Drawn over the picture: light-probes, neighborhoods, volumes, groups, lights, keys",

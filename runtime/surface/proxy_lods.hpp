@@ -17,8 +17,8 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/gpu/program.hpp"
 #include "runtime/gpu/arena.hpp"
+#include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/local_light.hpp"
 #include "runtime/sh/window.hpp"

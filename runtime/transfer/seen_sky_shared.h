@@ -19,7 +19,7 @@ LAMBENT_CONSTANT kSeenWords = (kSeenCoefficients + 1u) / 2u;
 
 LAMBENT_CONSTANT kSeenWeights = kSeenBands * (kSeenBands + 1u) / 2u;  // of the kernel that reads them
 
-// What the kernels of evaluate/seen_sky.hpp bind and read besides transfer_shared.h.
+// The kernels of evaluate/seen_sky.hpp bind and read these besides transfer_shared.h.
 LAMBENT_CONSTANT kBindSeenCells = 1u;     // SeenCell
 LAMBENT_CONSTANT kBindSeenSamples = 6u;   // per sample and output kSeenWords words
 LAMBENT_CONSTANT kBindSeenDraws = 1u;     // SeenDraw

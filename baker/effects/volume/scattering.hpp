@@ -1,5 +1,5 @@
-// What isotropic.cpp and phased.cpp share: light that reaches the samples of a volume unscattered, and the
-// solver that adds all scatterings to it.
+// Gives isotropic.cpp and phased.cpp the light that reaches the samples of a volume unscattered, and the solver
+// that adds all scatterings to it.
 #pragma once
 
 #include <cstddef>

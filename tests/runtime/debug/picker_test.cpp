@@ -1,10 +1,9 @@
 // Tests that picking returns what the picture shows.
-#include "runtime/debug/data_view.hpp"
-
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/debug/data_view.hpp"
 #include "tests/support/frame/live_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
